@@ -1,0 +1,41 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The program: one line for an error, and its kind as the exit status.
+#include <fmt/core.h>
+
+#include <CLI/CLI.hpp>
+#include <exception>
+#include <new>
+
+#include "driver/console.h"
+#include "driver/verbs.h"
+#include "slicer/error.h"
+
+int main(int argc, char** argv) {
+  using namespace binderjet;
+  CLI::App program{"binderjet: the open printer driver for powder-binder 3D printers", "binderjet"};
+  program.set_version_flag("--version", "binderjet " BINDERJET_VERSION);
+  program.require_subcommand(1);
+  add_slice_verb(program);
+  add_export_verb(program);
+  add_join_verb(program);
+  add_print_verb(program);
+  add_profile_verb(program);
+
+  catch_interrupts();
+  try {
+    program.parse(argc, argv);
+    return 0;
+  } catch (const CLI::ParseError& error) {
+    const int status = program.exit(error);
+    return status == 0 ? 0 : static_cast<int>(ErrorKind::kUsage);
+  } catch (const Error& error) {
+    fmt::print(stderr, "binderjet: {}\n", error.what());
+    return static_cast<int>(error.kind());
+  } catch (const std::bad_alloc&) {
+    fmt::print(stderr, "binderjet: out of memory; try a smaller part or a coarser grid\n");
+    return static_cast<int>(ErrorKind::kNoRoom);
+  } catch (const std::exception& error) {
+    fmt::print(stderr, "binderjet: internal error, please report it: {}\n", error.what());
+    return 1;
+  }
+}

@@ -1,0 +1,18 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The verbs of the program; each adds itself to the command line and runs in the parser's callback.
+// A verb ends by returning (exit status 0) or by throwing Error.
+#pragma once
+
+namespace CLI {
+class App;
+}
+
+namespace binderjet {
+
+void add_slice_verb(CLI::App& program);
+void add_export_verb(CLI::App& program);
+void add_join_verb(CLI::App& program);
+void add_print_verb(CLI::App& program);
+void add_profile_verb(CLI::App& program);
+
+}  // namespace binderjet
