@@ -1,0 +1,38 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// What a sliced job will cost at the printer, and what slicing it cost here.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "driver/console.h"
+#include "driver/job.h"
+
+namespace binderjet {
+
+struct EncodedLayer {
+  std::vector<std::byte> record;
+  std::int64_t mask_px = 0;
+  std::int64_t target_vx = 0;
+};
+
+struct Totals {
+  int layers = 0;
+  std::int64_t mask_px = 0;
+  std::int64_t target_vx = 0;
+  double seconds = 0;
+
+  void add(const EncodedLayer& layer) {
+    ++layers;
+    mask_px += layer.mask_px;
+    target_vx += layer.target_vx;
+  }
+};
+
+// The result of `slice`, for a person or as JSON.
+void report(const JobHeader& header, const Totals& totals, const std::string& out,
+            const std::vector<std::string>& warnings, const Console& console);
+
+}  // namespace binderjet

@@ -1,0 +1,188 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "driver/job.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <nlohmann/json.hpp>
+#include <utility>
+
+#include "driver/files.h"
+#include "slicer/error.h"
+#include "slicer/place.h"
+#include "slicer/read_mesh.h"
+#include "slicer/repair.h"
+
+namespace binderjet {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+double unit_of(const std::string& units, const MeshFile& file) {
+  if (units.empty()) return file.unit_mm;
+  static const std::vector<std::pair<std::string, double>> known = {
+      {"mm", 1}, {"cm", 10}, {"m", 1000}, {"um", 0.001}, {"in", 25.4}, {"ft", 304.8}};
+  for (const auto& [word, mm] : known) {
+    if (word == units) return mm;
+  }
+  throw Error(ErrorKind::kUsage, "--units", "\"" + units + "\" is not one of mm, cm, m, um, in, ft");
+}
+
+std::array<int, 2> lower_corner(const std::vector<Source>& sources) {
+  std::array<int, 2> corner = sources.front().corner_px;
+  for (const Source& source : sources) {
+    for (std::size_t axis = 0; axis < 2; ++axis) {
+      corner[axis] = std::min(corner[axis], source.corner_px[axis]);
+    }
+  }
+  return corner;
+}
+
+Json to_json(const Source& source) {
+  return {{"file", source.file},           {"hash", source.hash},
+          {"unit_mm", source.unit_mm},     {"scale", source.scale},
+          {"rotate_deg", source.rotate_deg}, {"corner_px", source.corner_px}};
+}
+
+Source source_of(const Json& json) {
+  Source source;
+  json.at("file").get_to(source.file);
+  json.at("hash").get_to(source.hash);
+  json.at("unit_mm").get_to(source.unit_mm);
+  json.at("scale").get_to(source.scale);
+  json.at("rotate_deg").get_to(source.rotate_deg);
+  json.at("corner_px").get_to(source.corner_px);
+  return source;
+}
+
+}  // namespace
+
+std::array<double, 3> JobHeader::origin_mm() const {
+  std::array<double, 3> origin{};
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    origin[axis] = box.bed_px[axis] * grid.pitch_mm[axis];
+  }
+  return origin;
+}
+
+std::string to_text(const JobHeader& header) {
+  Json sources = Json::array();
+  for (const Source& source : header.sources) sources.push_back(to_json(source));
+  const Json json = {{"format", "binderjet-job"},
+                     {"version", 1},
+                     {"program", BINDERJET_VERSION},
+                     {"size_px", header.box.size_px},
+                     {"pitch_mm", header.grid.pitch_mm},
+                     {"detail_vx", header.grid.detail_vx},
+                     {"origin_mm", header.origin_mm()},
+                     {"margin_px", header.box.margin_px},
+                     {"bed_px", header.box.bed_px},
+                     {"enhance", header.enhance},
+                     {"passes", header.passes},
+                     {"sources", sources},
+                     {"profile",
+                      {{"name", header.profile.name},
+                       {"hash", text_hash(header.profile.text)},
+                       {"text", header.profile.text}}}};
+  return json.dump();
+}
+
+JobHeader parse_job_header(const std::string& text, const std::string& where) {
+  try {
+    const Json json = Json::parse(text);
+    if (json.at("format") != "binderjet-job" || json.at("version") != 1) {
+      throw Error(ErrorKind::kBadInput, where,
+                  "is a job of another version; slice it with this program");
+    }
+    JobHeader header;
+    header.profile =
+        parse_profile(json.at("profile").at("text").get<std::string>(), where + ": profile");
+    json.at("size_px").get_to(header.box.size_px);
+    json.at("margin_px").get_to(header.box.margin_px);
+    json.at("bed_px").get_to(header.box.bed_px);
+    json.at("pitch_mm").get_to(header.grid.pitch_mm);
+    json.at("detail_vx").get_to(header.grid.detail_vx);
+    json.at("enhance").get_to(header.enhance);
+    json.at("passes").get_to(header.passes);
+    for (const Json& source : json.at("sources")) header.sources.push_back(source_of(source));
+    for (const int size : header.box.size_px) {
+      if (size < 1 || size > (1 << 24)) throw Error(ErrorKind::kBadInput, where, "has a bad size");
+    }
+    return header;
+  } catch (const Json::exception& error) {
+    throw Error(ErrorKind::kBadInput, where,
+                std::string("has a header that this program does not read: ") + error.what());
+  }
+}
+
+Part load_part(const std::string& file, const PartOptions& options) {
+  Part part;
+  MeshFile read = read_mesh(file);
+  part.mesh = std::move(read.mesh);
+  part.warnings = std::move(read.warnings);
+  for (std::string& note : repair_mesh(part.mesh, file).notes) {
+    part.warnings.push_back(file + ": " + note);
+  }
+  part.source.file = file;
+  part.source.hash = file_hash(file);
+  part.source.unit_mm = unit_of(options.units, read);
+  part.source.scale = options.scale;
+  part.source.rotate_deg = options.rotate_deg;
+  transform_mesh(part.mesh, part.source.unit_mm * options.scale, options.rotate_deg);
+  return part;
+}
+
+Mesh merge_parts(std::vector<Part> parts, const Grid& grid) {
+  std::vector<Source> sources;
+  for (const Part& part : parts) sources.push_back(part.source);
+  const std::array<int, 2> corner = lower_corner(sources);
+  Mesh merged;
+  for (Part& part : parts) {
+    for (std::size_t axis = 0; axis < 2; ++axis) {
+      const int shift_px = part.source.corner_px[axis] - corner[axis];
+      if (shift_px == 0) continue;
+      for (Point& point : part.mesh.points) point[axis] += shift_px * grid.pitch_mm[axis];
+    }
+    if (merged.points.empty()) {
+      merged = std::move(part.mesh);
+      continue;
+    }
+    const int base = static_cast<int>(merged.points.size());
+    merged.points.insert(merged.points.end(), part.mesh.points.begin(), part.mesh.points.end());
+    for (const Triangle& t : part.mesh.triangles) {
+      merged.triangles.push_back({t[0] + base, t[1] + base, t[2] + base});
+    }
+  }
+  return merged;
+}
+
+std::shared_ptr<const Mesh> reload_parts(const JobHeader& header, const std::string& folder) {
+  std::vector<Part> parts;
+  for (const Source& source : header.sources) {
+    std::string file = source.file;
+    std::error_code error;
+    if (!std::filesystem::exists(file, error)) {
+      const auto beside = std::filesystem::path(folder) / std::filesystem::path(file).filename();
+      if (!std::filesystem::exists(beside, error)) {
+        throw Error(ErrorKind::kBadInput, file,
+                    "the model this job was made from is gone; put it back or beside the job");
+      }
+      file = beside.string();
+    }
+    if (file_hash(file) != source.hash) {
+      throw Error(ErrorKind::kBadInput, file,
+                  "has changed since this job was made from it; slice it again");
+    }
+    Part part = load_part(file, {"", source.scale, source.rotate_deg});
+    // The unit may have been given by hand, so the job's own figure counts.
+    if (part.source.unit_mm != source.unit_mm) {
+      throw Error(ErrorKind::kBadInput, file, "declares another unit than this job was made with");
+    }
+    part.source = source;
+    parts.push_back(std::move(part));
+  }
+  return std::make_shared<const Mesh>(merge_parts(std::move(parts), header.grid));
+}
+
+}  // namespace binderjet

@@ -1,0 +1,64 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// What a job says of itself: profile, grid, box, where each part came from and how it was placed.
+#pragma once
+
+#include <array>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "driver/profile.h"
+#include "slicer/grid.h"
+#include "slicer/mesh.h"
+
+namespace binderjet {
+
+// One part of a job: its file, and what turns the file's numbers into a place on the bed.
+struct Source {
+  std::string file;  // as it was given
+  std::string hash;  // of the file's bytes when it was sliced
+  double unit_mm = 1;
+  double scale = 1;
+  std::array<double, 3> rotate_deg{};
+  std::array<int, 2> corner_px{};  // the part's lower corner on the bed
+};
+
+struct JobHeader {
+  Profile profile;
+  Grid grid;
+  JobBox box;
+  std::string enhance = "none";
+  int passes = 0;
+  std::vector<Source> sources;
+
+  int layers() const { return box.size_px[2]; }
+  // The box's lower corner on the bed.
+  std::array<double, 3> origin_mm() const;
+};
+
+// One JSON object; the same header gives the same bytes.
+std::string to_text(const JobHeader& header);
+// `where` names the job in messages. Error{kBadInput} if this is no header of ours.
+JobHeader parse_job_header(const std::string& text, const std::string& where);
+
+// A part read from its file, repaired, in millimetres and turned, its lower corner at (0, 0, 0).
+struct Part {
+  Mesh mesh;
+  Source source;  // corner_px is not yet decided
+  std::vector<std::string> warnings;
+};
+struct PartOptions {
+  std::string units;  // "" = what the file declares, else mm
+  double scale = 1;
+  std::array<double, 3> rotate_deg{};
+};
+Part load_part(const std::string& file, const PartOptions& options);
+
+// The parts as one mesh in the job's coordinates: the lower corner of them all at (0, 0, 0).
+Mesh merge_parts(std::vector<Part> parts, const Grid& grid);
+
+// The job's parts read once more from their files; `folder` is where relative names are also tried.
+// Error{kBadInput} if a file is gone or is not the file that was sliced.
+std::shared_ptr<const Mesh> reload_parts(const JobHeader& header, const std::string& folder);
+
+}  // namespace binderjet

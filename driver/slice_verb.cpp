@@ -1,0 +1,177 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// slice PART... -p PROFILE -o JOB: models in, a printable job out.
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <chrono>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "driver/console.h"
+#include "driver/estimate.h"
+#include "driver/job.h"
+#include "driver/result.h"
+#include "driver/verbs.h"
+#include "slicer/effects/model.h"
+#include "slicer/masks.h"
+#include "slicer/place.h"
+#include "transport/job_file.h"
+
+namespace binderjet {
+namespace {
+
+struct SliceOptions {
+  std::vector<std::string> parts;
+  std::string profile;
+  std::string out;
+  std::string enhance = "none";
+  std::optional<double> layer_mm;
+  PartOptions part;
+  std::vector<std::string> at;
+  std::string layers;
+};
+
+// "A:B" as numbers; either may be empty.
+template <class Number>
+std::vector<std::optional<Number>> split(const std::string& option, const std::string& text,
+                                         char separator, std::size_t count) {
+  std::vector<std::optional<Number>> values;
+  std::size_t begin = 0;
+  while (true) {
+    const std::size_t end = std::min(text.find(separator, begin), text.size());
+    const std::string piece = text.substr(begin, end - begin);
+    Number value{};
+    if (piece.empty()) {
+      values.emplace_back();
+    } else if (CLI::detail::lexical_cast(piece, value)) {
+      values.emplace_back(value);
+    } else {
+      throw Error(ErrorKind::kUsage, option, "\"" + piece + "\" is not a number");
+    }
+    if (end == text.size()) break;
+    begin = end + 1;
+  }
+  if (values.size() != count) {
+    throw Error(ErrorKind::kUsage, option,
+                fmt::format("needs {} values between \"{}\", got \"{}\"", count, separator, text));
+  }
+  return values;
+}
+
+LayerRange layer_range(const std::string& text, int layers) {
+  if (text.empty()) return {0, layers};
+  const auto ends = split<int>("--layers", text, ':', 2);
+  const LayerRange range{ends[0].value_or(0), ends[1].value_or(layers)};
+  if (range.first < 0 || range.last > layers || range.first >= range.last) {
+    throw Error(ErrorKind::kUsage, "--layers",
+                fmt::format("{} is empty or beyond the part's {} layers", text, layers));
+  }
+  return range;
+}
+
+// Decides where each part stands: where --at says, else side by side around the bed's centre.
+void place_parts(std::vector<Part>& parts, const SliceOptions& options, const Grid& grid,
+                 const Profile& profile) {
+  if (options.at.size() > parts.size()) {
+    throw Error(ErrorKind::kUsage, "--at", "is given more often than there are parts");
+  }
+  std::vector<PartBox> boxes;
+  for (std::size_t i = 0; i < parts.size(); ++i) {
+    PartBox box{parts[i].source.file, bounding_box(parts[i].mesh), std::nullopt};
+    if (i < options.at.size()) {
+      const auto at = split<double>("--at", options.at[i], ',', 2);
+      if (!at[0] || !at[1]) throw Error(ErrorKind::kUsage, "--at", "needs X,Y in mm");
+      box.at_mm = {*at[0], *at[1]};
+    }
+    boxes.push_back(box);
+  }
+  const std::vector<BedSpot> spots = place_on_bed(boxes, profile.bed_mm, grid);
+  for (std::size_t i = 0; i < parts.size(); ++i) {
+    parts[i].source.corner_px = {spots[i].x_px, spots[i].y_px};
+  }
+}
+
+JobHeader plan_job(const SliceOptions& options, std::vector<Part>& parts) {
+  JobHeader header;
+  header.profile = load_profile(options.profile);
+  header.grid = header.profile.grid(options.layer_mm);
+  header.enhance = options.enhance;
+  for (const std::string& file : options.parts) parts.push_back(load_part(file, options.part));
+  place_parts(parts, options, header.grid, header.profile);
+  for (const Part& part : parts) header.sources.push_back(part.source);
+  return header;
+}
+
+void slice(const SliceOptions& options, const Console& console) {
+  const auto start = std::chrono::steady_clock::now();
+  std::vector<Part> parts;
+  JobHeader header = plan_job(options, parts);
+  std::vector<std::string> warnings;
+  std::array<int, 2> corner = header.sources.front().corner_px;
+  for (const Part& part : parts) {
+    warnings.insert(warnings.end(), part.warnings.begin(), part.warnings.end());
+    for (std::size_t axis = 0; axis < 2; ++axis) {
+      corner[axis] = std::min(corner[axis], part.source.corner_px[axis]);
+    }
+  }
+  for (const std::string& warning : warnings) console.warning(warning);
+
+  const auto mesh = std::make_shared<const Mesh>(merge_parts(std::move(parts), header.grid));
+  header.box = job_box(bounding_box(*mesh), header.grid, corner,
+                       model_reach(header.profile.effects, header.grid).xy_vx);
+  const LayerRange range = layer_range(options.layers, header.layers());
+
+  JobWriter writer = value_or_throw(JobWriter::create(options.out, to_text(header)));
+  Progress progress(console, "slicing", range.size());
+  using Encode = Step<MaskLayer, EncodedLayer>;
+  Encode stream(masks(mesh, header.grid, header.box, range), range, 0, header.layers(),
+                [](int layer, Encode::Window window) {
+                  const MaskLayer& mask = *window.front();
+                  return EncodedLayer{encode_record(RecordKind::kMask, layer, pack(mask.mask)),
+                                      mask.mask.count(), mask.target_vx};
+                });
+  Totals totals;
+  while (stream.rest().size() > 0) {
+    for (const Shared<EncodedLayer>& layer : stream.next(kBlockLayers)) {
+      value_or_throw(writer.append(layer->record));
+      totals.add(*layer);
+    }
+    progress.advance(totals.layers);
+  }
+  value_or_throw(writer.finish());
+  totals.seconds =
+      std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  report(header, totals, options.out, warnings, console);
+}
+
+}  // namespace
+
+void add_slice_verb(CLI::App& program) {
+  CLI::App* verb = program.add_subcommand("slice", "turn models into a printable job");
+  auto options = std::make_shared<SliceOptions>();
+  verb->add_option("PART", options->parts, "models: STL, PLY, OBJ, OFF, 3MF, glTF and others")
+      ->required();
+  verb->add_option("-p,--profile", options->profile, "a printer profile's name or path")
+      ->required();
+  verb->add_option("-o,--output", options->out, "the job to write (.bjob)")->required();
+  verb->add_option("--enhance", options->enhance, "how masks answer the printer's blur")
+      ->check(CLI::IsMember({"none"}))
+      ->capture_default_str();
+  verb->add_option("--layer", options->layer_mm, "layer height in mm, one the printer has");
+  verb->add_option("--scale", options->part.scale, "scale factor")
+      ->check(CLI::PositiveNumber)
+      ->capture_default_str();
+  verb->add_option("--units", options->part.units,
+                   "the model's unit: mm, cm, m, um, in, ft (default: what the file says, else mm)");
+  verb->add_option("--rotate", options->part.rotate_deg, "turn about x, then y, then z, in degrees")
+      ->delimiter(',');
+  verb->add_option("--at", options->at,
+                   "X,Y in mm: the part's lower corner on the bed; once per part")
+      ->allow_extra_args(false);
+  verb->add_option("--layers", options->layers, "A:B, slice only layers A <= k < B (see join)");
+  verb->callback([options, console = add_console_options(*verb)] { slice(*options, *console); });
+}
+
+}  // namespace binderjet

@@ -1,0 +1,63 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// An effect of the printer model as data: its kind, its parameters, how far it reaches.
+//
+// Adding an effect touches: one file here with its EffectKind, one line in effect.cpp's list, its
+// tests. Profiles, simulate, enhance and calibrate find it through that list.
+#pragma once
+
+#include <array>
+#include <map>
+#include <string>
+#include <vector>
+
+#include "slicer/grid.h"
+
+namespace binderjet {
+
+// One effect of a profile: the kind and its parameters by name.
+struct EffectSpec {
+  std::string kind;
+  std::map<std::string, std::string> words;
+  std::map<std::string, std::vector<double>> numbers;
+
+  double number(const std::string& name, std::size_t index = 0) const {
+    return numbers.at(name).at(index);
+  }
+};
+
+// How far an effect reaches from a voxel: voxels in x and y, layers in z.
+struct Reach {
+  std::array<int, 2> xy_vx{};
+  int layers_below = 0;
+  int layers_above = 0;
+};
+
+struct NumberRule {
+  std::string name;
+  std::size_t count;  // how many numbers the parameter has
+  double min;         // allowed: min < value <= max
+  double max;
+};
+struct WordRule {
+  std::string name;
+  std::vector<std::string> allowed;
+};
+
+struct EffectKind {
+  std::string kind;
+  std::vector<WordRule> words;
+  std::vector<NumberRule> numbers;
+  Reach (*reach)(const EffectSpec&, const Grid&);
+};
+
+const std::vector<EffectKind>& effect_kinds();
+const EffectKind* find_effect_kind(const std::string& kind);  // null if there is none
+
+// What is wrong with a spec, and in which key ("" is the kind itself); empty `what` if nothing is.
+struct SpecFault {
+  std::string key;
+  std::string what;
+};
+SpecFault check_effect(const EffectSpec& spec);
+
+}  // namespace binderjet

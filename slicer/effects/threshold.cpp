@@ -1,0 +1,13 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "slicer/effects/threshold.h"
+
+namespace binderjet {
+
+EffectKind threshold_kind() {
+  return {"threshold",
+          {},
+          {{"level", 1, 0, 1}},
+          [](const EffectSpec&, const Grid&) { return Reach{}; }};
+}
+
+}  // namespace binderjet

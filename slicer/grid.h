@@ -1,0 +1,40 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The printer grid, the finer voxel grid and the box of a job; millimetres become voxels here.
+#pragma once
+
+#include <array>
+
+#include "slicer/mesh.h"
+
+namespace binderjet {
+
+// Printer pixel (i, j) of layer k covers [i, i+1) x [j, j+1) x [k, k+1) times pitch_mm. Each pixel
+// is cut into detail_vx voxels (rx, ry, rz); slice n = k rz + s is one voxel high.
+struct Grid {
+  std::array<double, 3> pitch_mm{};
+  std::array<int, 3> detail_vx{2, 2, 2};
+
+  double voxel_mm(int axis) const { return pitch_mm[axis] / detail_vx[axis]; }
+  // Where voxel `index` has its centre.
+  double center_mm(int axis, int index) const { return (index + 0.5) * voxel_mm(axis); }
+};
+
+// A job's box: the part's box grown by the printer model's reach, in whole pixels.
+struct JobBox {
+  std::array<int, 3> size_px{};    // nx, ny, layers
+  std::array<int, 3> margin_px{};  // from the box's lower corner to the part's
+  std::array<int, 3> bed_px{};     // the box's lower corner on the bed; negative off the bed
+
+  int width_vx(const Grid& grid) const { return size_px[0] * grid.detail_vx[0]; }
+  int height_vx(const Grid& grid) const { return size_px[1] * grid.detail_vx[1]; }
+};
+
+// Pixels or layers needed for a length from 0; a length within rounding of a whole number is that
+// number, so that 10.2 mm are 100 layers of 0.102 mm.
+int pixels_for(double length_mm, double pitch_mm);
+
+// The box of a part whose lower corner is at (0, 0, 0), with that corner on bed pixel `corner_px`.
+JobBox job_box(const Box& part, const Grid& grid, std::array<int, 2> corner_px,
+               std::array<int, 2> reach_vx);
+
+}  // namespace binderjet
