@@ -120,7 +120,7 @@ void slice(const SliceOptions& options, const Console& console) {
 
   const auto mesh = std::make_shared<const Mesh>(merge_parts(std::move(parts), header.grid));
   header.box = job_box(bounding_box(*mesh), header.grid, corner,
-                       model_reach(header.profile.effects, header.grid).xy_vx);
+                       PrinterModel(header.profile.effects, header.grid).reach().xy_vx);
   const LayerRange range = layer_range(options.layers, header.layers());
 
   JobWriter writer = value_or_throw(JobWriter::create(options.out, to_text(header)));

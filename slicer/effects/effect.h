@@ -43,11 +43,15 @@ struct WordRule {
   std::vector<std::string> allowed;
 };
 
+struct ModelForm;  // slicer/effects/model.h
+
 struct EffectKind {
   std::string kind;
   std::vector<WordRule> words;
   std::vector<NumberRule> numbers;
   Reach (*reach)(const EffectSpec&, const Grid&);
+  // The forward form: writes the effect into the model. Error{kBadInput} if it does not fit there.
+  void (*add)(const EffectSpec&, const Grid&, ModelForm&);
 };
 
 const std::vector<EffectKind>& effect_kinds();

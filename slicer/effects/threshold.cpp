@@ -1,13 +1,18 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "slicer/effects/threshold.h"
 
+#include "slicer/effects/model.h"
+
 namespace binderjet {
 
 EffectKind threshold_kind() {
   return {"threshold",
           {},
           {{"level", 1, 0, 1}},
-          [](const EffectSpec&, const Grid&) { return Reach{}; }};
+          [](const EffectSpec&, const Grid&) { return Reach{}; },
+          [](const EffectSpec& spec, const Grid&, ModelForm& form) {
+            form.level = spec.number("level");
+          }};
 }
 
 }  // namespace binderjet
