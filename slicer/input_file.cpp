@@ -59,7 +59,9 @@ bool InputFile::line(std::string_view& text) {
   begin_ += length;
   std::size_t ending = 0;
   if (begin_ < end_) {
-    ending = buffer_[begin_] == '\r' && begin_ + 1 < end_ && buffer_[begin_ + 1] == '\n' ? 2 : 1;
+    const bool cr = buffer_[begin_] == '\r';
+    ending = cr && begin_ + 1 < end_ && buffer_[begin_ + 1] == '\n' ? 2 : 1;
+    ++(ending == 2 ? crlf_ : cr ? cr_ : lf_);
   }
   begin_ += ending;
   position_ += static_cast<std::int64_t>(length + ending);
@@ -81,6 +83,12 @@ std::string_view InputFile::peek(std::size_t count) {
 }
 
 std::string InputFile::here() const { return name_ + ": line " + std::to_string(line_number_); }
+
+std::string InputFile::odd_line_ends() const {
+  if ((lf_ > 0) + (cr_ > 0) + (crlf_ > 0) > 1)
+    return "its lines end in different ways; all are read";
+  return cr_ > 0 ? "its lines end in CR alone; read as lines" : "";
+}
 
 std::string_view Words::next() {
   const auto is_space = [](char c) { return c == ' ' || c == '\t' || c == '\v' || c == '\f'; };

@@ -31,7 +31,9 @@ class InputFile {
 
   // "gargoyle.obj: line 12": the line that line() gave last.
   std::string here() const;
-  std::int64_t line_number() const { return line_number_; }
+
+  // What is odd about the line ends so far, for a warning; empty if nothing is.
+  std::string odd_line_ends() const;
 
   static constexpr std::size_t kBuffer = std::size_t{1} << 20;
 
@@ -43,6 +45,7 @@ class InputFile {
   std::int64_t size_ = 0;
   std::int64_t position_ = 0;
   std::int64_t line_number_ = 0;
+  std::int64_t lf_ = 0, cr_ = 0, crlf_ = 0;  // lines that ended so
   std::vector<char> buffer_;
   std::size_t begin_ = 0, end_ = 0;
 };

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
+#include <cstdlib>
 
 namespace binderjet {
 namespace {
@@ -20,9 +21,10 @@ void for_each_edge(const Mesh& mesh, const Visit& visit) {
   }
 }
 
-// Calls visit(from, to, times) for every edge that is left over.
+// Calls visit(low, high, times, faces) for every edge: how often it is left over from the smaller
+// point to the larger one (negative: the other way), and how many faces it has.
 template <typename Visit>
-void for_each_boundary_edge(const Mesh& mesh, const Visit& visit) {
+void for_each_sum(const Mesh& mesh, const Visit& visit) {
   std::vector<std::uint32_t> begin(mesh.points.size() + 1, 0);
   for_each_edge(mesh, [&](std::uint32_t from, std::uint32_t to) { ++begin[std::min(from, to)]; });
   std::uint32_t sum = 0;
@@ -40,9 +42,11 @@ void for_each_boundary_edge(const Mesh& mesh, const Visit& visit) {
     for (auto edge = first; edge != last;) {
       const std::uint32_t high = *edge >> 1;
       int times = 0;
-      for (; edge != last && *edge >> 1 == high; ++edge) times += (*edge & 1) != 0 ? -1 : 1;
-      if (times > 0) visit(static_cast<int>(low), static_cast<int>(high), times);
-      if (times < 0) visit(static_cast<int>(high), static_cast<int>(low), -times);
+      int faces = 0;
+      for (; edge != last && *edge >> 1 == high; ++edge, ++faces) {
+        times += (*edge & 1) != 0 ? -1 : 1;
+      }
+      visit(static_cast<int>(low), static_cast<int>(high), times, faces);
     }
   }
 }
@@ -51,16 +55,20 @@ void for_each_boundary_edge(const Mesh& mesh, const Visit& visit) {
 
 std::vector<DirectedEdge> boundary_edges(const Mesh& mesh) {
   std::vector<DirectedEdge> result;
-  for_each_boundary_edge(mesh, [&](int from, int to, int times) {
-    result.insert(result.end(), static_cast<std::size_t>(times), {from, to});
+  for_each_sum(mesh, [&](int low, int high, int times, int) {
+    const DirectedEdge edge = times > 0 ? DirectedEdge{low, high} : DirectedEdge{high, low};
+    result.insert(result.end(), static_cast<std::size_t>(std::abs(times)), edge);
   });
   return result;
 }
 
-bool is_closed(const Mesh& mesh) {
-  bool closed = true;
-  for_each_boundary_edge(mesh, [&](int, int, int) { closed = false; });
-  return closed;
+EdgeCounts count_edges(const Mesh& mesh) {
+  EdgeCounts counts;
+  for_each_sum(mesh, [&](int, int, int times, int faces) {
+    counts.open += std::abs(times);
+    counts.crowded += faces > 2 ? 1 : 0;
+  });
+  return counts;
 }
 
 double signed_volume(const Mesh& mesh) {

@@ -7,6 +7,7 @@
 #pragma once
 
 #include <array>
+#include <cstdint>
 #include <vector>
 
 #include "slicer/mesh.h"
@@ -19,8 +20,15 @@ using DirectedEdge = std::array<int, 2>;  // from, to: points of the mesh
 // them begin as end.
 std::vector<DirectedEdge> boundary_edges(const Mesh& mesh);
 
-// Whether that is empty. Takes about 14 bytes a triangle beside the mesh.
-bool is_closed(const Mesh& mesh);
+struct EdgeCounts {
+  std::int64_t open = 0;     // directed edges of the boundary
+  std::int64_t crowded = 0;  // edges of more than two faces
+};
+
+// Takes about 14 bytes a triangle beside the mesh.
+EdgeCounts count_edges(const Mesh& mesh);
+
+inline bool is_closed(const Mesh& mesh) { return count_edges(mesh).open == 0; }
 
 // The volume inside, counted as often as the surface winds around it; negative if inside out.
 double signed_volume(const Mesh& mesh);

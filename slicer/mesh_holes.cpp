@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Boundary edges strung into simple cycles; lids of least area by CGAL, fans where it finds none.
+// Boundary edges strung into simple cycles; lids by CGAL, or fans where those are smaller.
 #include "slicer/mesh_holes.h"
 
 #include <CGAL/Exact_predicates_inexact_constructions_kernel.h>
@@ -49,7 +49,7 @@ std::vector<std::vector<int>> boundary_cycles(const std::vector<DirectedEdge>& e
   return cycles;
 }
 
-std::vector<Triangle> lid_of_least_area(const Mesh& mesh, const std::vector<int>& cycle) {
+std::vector<Triangle> smooth_lid(const Mesh& mesh, const std::vector<int>& cycle) {
   std::vector<Kernel::Point_3> line;
   for (const int index : cycle) {
     const Point& p = mesh.points[static_cast<std::size_t>(index)];
@@ -74,20 +74,51 @@ std::vector<Triangle> lid_of_least_area(const Mesh& mesh, const std::vector<int>
   return lid;
 }
 
-std::vector<Triangle> fan(Mesh& mesh, const std::vector<int>& cycle) {
-  Point centroid{};
-  for (const int index : cycle) {
-    for (std::size_t i = 0; i < 3; ++i)
-      centroid[i] += mesh.points[static_cast<std::size_t>(index)][i];
-  }
-  for (double& value : centroid) value /= static_cast<double>(cycle.size());
-  const auto center = static_cast<int>(mesh.points.size());
-  mesh.points.push_back(centroid);
+std::vector<Triangle> fan(const std::vector<int>& cycle, int center) {
   std::vector<Triangle> lid;
   for (std::size_t i = 0; i < cycle.size(); ++i) {
     lid.push_back({cycle[i], cycle[(i + 1) % cycle.size()], center});
   }
   return lid;
+}
+
+Point centroid(const Mesh& mesh, const std::vector<int>& cycle) {
+  Point sum{};
+  for (const int index : cycle) {
+    for (std::size_t i = 0; i < 3; ++i) sum[i] += mesh.points[static_cast<std::size_t>(index)][i];
+  }
+  for (double& value : sum) value /= static_cast<double>(cycle.size());
+  return sum;
+}
+
+double area_of(const Mesh& mesh, const std::vector<Triangle>& lid) {
+  double sum = 0;
+  for (const Triangle& triangle : lid) sum += triangle_area(mesh, triangle);
+  return sum;
+}
+
+// The smaller of what CGAL finds (it looks at the angles first, and may fold) and the fan.
+double close_cycle(Mesh& mesh, const std::vector<int>& cycle) {
+  std::vector<Triangle> lid;
+  if (cycle.size() == 3) {
+    lid = {{cycle[0], cycle[1], cycle[2]}};
+  } else if (cycle.size() <= kLongestSearch) {
+    lid = smooth_lid(mesh, cycle);
+  }
+  double area = area_of(mesh, lid);
+  if (cycle.size() > 3) {
+    mesh.points.push_back(centroid(mesh, cycle));
+    std::vector<Triangle> other = fan(cycle, static_cast<int>(mesh.points.size()) - 1);
+    const double other_area = area_of(mesh, other);
+    if (lid.empty() || other_area < area) {
+      lid = std::move(other);
+      area = other_area;
+    } else {
+      mesh.points.pop_back();
+    }
+  }
+  mesh.triangles.insert(mesh.triangles.end(), lid.begin(), lid.end());
+  return area;
 }
 
 }  // namespace
@@ -98,17 +129,7 @@ ClosedHoles close_holes(Mesh& mesh) {
     ++result.holes;
     result.edges += static_cast<std::int64_t>(cycle.size());
     std::reverse(cycle.begin(), cycle.end());  // the lid runs against the edges it closes
-    std::vector<Triangle> lid;
-    if (cycle.size() == 3) {
-      lid = {{cycle[0], cycle[1], cycle[2]}};
-    } else if (cycle.size() <= kLongestSearch) {
-      lid = lid_of_least_area(mesh, cycle);
-    }
-    if (lid.empty()) lid = fan(mesh, cycle);
-    for (const Triangle& triangle : lid) {
-      result.area += triangle_area(mesh, triangle);
-      mesh.triangles.push_back(triangle);
-    }
+    result.area += close_cycle(mesh, cycle);
   }
   return result;
 }

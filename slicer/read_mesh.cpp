@@ -22,8 +22,7 @@ std::string lower_extension(const std::string& path) {
   return text;
 }
 
-MeshFile read_any(const std::string& path) {
-  InputFile file(path);
+MeshFile read_any(InputFile& file, const std::string& path) {
   if (file.size() == 0) {
     throw Error(ErrorKind::kBadInput, file.name(), "is empty; export the model again");
   }
@@ -83,7 +82,10 @@ void check(const MeshFile& file, const std::string& name) {
 MeshFile read_mesh(const std::string& path) {
   const std::string name = std::filesystem::path(path).filename().string();
   try {
-    MeshFile file = read_any(path);
+    InputFile input(path);
+    MeshFile file = read_any(input, path);
+    const std::string odd = input.odd_line_ends();
+    if (!odd.empty()) file.warnings.push_back(odd);
     check(file, name);
     return file;
   } catch (const std::bad_alloc&) {

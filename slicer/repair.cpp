@@ -13,6 +13,7 @@
 
 #include "slicer/error.h"
 #include "slicer/mesh_boundary.h"
+#include "slicer/mesh_crossings.h"
 #include "slicer/mesh_holes.h"
 #include "slicer/mesh_readers.h"
 #include "slicer/mesh_shells.h"
@@ -25,6 +26,9 @@ namespace {
 constexpr double kMostInvented = 0.5;
 // Below this share of the box a volume is rounding.
 constexpr double kLeastVolume = 1e-9;
+// Up to this many triangles the surface is asked whether it goes through itself, which only earns
+// a remark; the answer takes 0.1 s there, and grows.
+constexpr std::size_t kSmall = 20'000;
 
 double diagonal(const Mesh& mesh) {
   const Box box = bounding_box(mesh);
@@ -138,9 +142,17 @@ class Repairer {
   Repair repair() {
     note(drop_repeated_corners(mesh_), "dropped", "degenerate face", "degenerate faces");
     if (mesh_.triangles.empty()) refuse("has no face with an area; export the model again");
-    if (!is_closed(mesh_)) close();
+    EdgeCounts edges = count_edges(mesh_);
+    if (edges.open > 0) {
+      close();
+      edges = count_edges(mesh_);
+    } else if (edges.crowded > 0) {
+      // Only a repeated face can be dropped from a closed surface, and only if it stays closed.
+      note(drop_if_closed(), "dropped", "duplicate face", "duplicate faces");
+      edges = count_edges(mesh_);
+    }
     turn_outward();
-    remark();
+    remark(edges);
     return std::move(result_);
   }
 
@@ -222,13 +234,13 @@ class Repairer {
         fmt::format("closed {} ({}, {:.2g} % of the surface)", counted(lids.holes, "hole", "holes"),
                     counted(lids.edges, "edge", "edges"), 100 * lids.area / area_));
     // A lid that lies on a stray face cancels it.
-    note(drop_opposites(), "dropped", "stray face", "stray faces");
+    note(drop_if_closed(), "dropped", "stray face", "stray faces");
   }
 
-  std::int64_t drop_opposites() {
+  std::int64_t drop_if_closed() {
     Mesh changed = mesh_;
     const std::int64_t count = drop_duplicates(changed, true);
-    if (count == 0 || !is_closed(changed)) return 0;
+    if (count == 0 || changed.triangles.empty() || !is_closed(changed)) return 0;
     mesh_ = std::move(changed);
     return count;
   }
@@ -263,7 +275,19 @@ class Repairer {
                        [&](double v) { return std::abs(v) > kLeastVolume * whole; });
   }
 
-  void remark() {
+  void remark(const EdgeCounts& edges) {
+    if (edges.crowded > 0) {
+      result_.remarks.push_back(counted(edges.crowded, "edge", "edges") +
+                                " of more than two faces, left as they are");
+    }
+    if (mesh_.triangles.size() <= kSmall) {
+      const std::int64_t crossings = count_crossings(mesh_);
+      if (crossings > 0) {
+        result_.remarks.push_back("goes through itself at " +
+                                  counted(crossings, "pair of faces", "pairs of faces") +
+                                  "; all that the surface winds around is solid");
+      }
+    }
     const int pieces = shells_by_points(mesh_).count;
     if (pieces > 1) {
       result_.remarks.push_back(fmt::format("has {} pieces that do not touch", pieces));
