@@ -10,7 +10,6 @@
 
 #include "driver/files.h"
 #include "slicer/error.h"
-#include "slicer/place.h"
 #include "slicer/read_mesh.h"
 #include "slicer/repair.h"
 
@@ -19,15 +18,26 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-double unit_of(const std::string& units, const MeshFile& file) {
-  if (units.empty()) return file.unit_mm;
-  static const std::vector<std::pair<std::string, double>> known = {
-      {"mm", 1}, {"cm", 10}, {"m", 1000}, {"um", 0.001}, {"in", 25.4}, {"ft", 304.8}};
-  for (const auto& [word, mm] : known) {
-    if (word == units) return mm;
-  }
-  throw Error(ErrorKind::kUsage, "--units", "\"" + units + "\" is not one of mm, cm, m, um, in, ft");
+Json to_json(const Source& source) {
+  return {{"file", source.file},           {"hash", source.hash},
+          {"unit_mm", source.placement.unit_mm},
+          {"scale", source.placement.scale},
+          {"rotate_deg", source.placement.rotate_deg},
+          {"corner_px", source.corner_px}};
 }
+
+Source source_of(const Json& json) {
+  Source source;
+  json.at("file").get_to(source.file);
+  json.at("hash").get_to(source.hash);
+  json.at("unit_mm").get_to(source.placement.unit_mm);
+  json.at("scale").get_to(source.placement.scale);
+  json.at("rotate_deg").get_to(source.placement.rotate_deg);
+  json.at("corner_px").get_to(source.corner_px);
+  return source;
+}
+
+}  // namespace
 
 std::array<int, 2> lower_corner(const std::vector<Source>& sources) {
   std::array<int, 2> corner = sources.front().corner_px;
@@ -38,25 +48,6 @@ std::array<int, 2> lower_corner(const std::vector<Source>& sources) {
   }
   return corner;
 }
-
-Json to_json(const Source& source) {
-  return {{"file", source.file},           {"hash", source.hash},
-          {"unit_mm", source.unit_mm},     {"scale", source.scale},
-          {"rotate_deg", source.rotate_deg}, {"corner_px", source.corner_px}};
-}
-
-Source source_of(const Json& json) {
-  Source source;
-  json.at("file").get_to(source.file);
-  json.at("hash").get_to(source.hash);
-  json.at("unit_mm").get_to(source.unit_mm);
-  json.at("scale").get_to(source.scale);
-  json.at("rotate_deg").get_to(source.rotate_deg);
-  json.at("corner_px").get_to(source.corner_px);
-  return source;
-}
-
-}  // namespace
 
 std::array<double, 3> JobHeader::origin_mm() const {
   std::array<double, 3> origin{};
@@ -116,20 +107,25 @@ JobHeader parse_job_header(const std::string& text, const std::string& where) {
   }
 }
 
-Part load_part(const std::string& file, const PartOptions& options) {
+Part load_part(const std::string& file, std::optional<double> unit_mm,
+               const Placement& placement) {
   Part part;
+  part.source.file = file;
+  part.source.hash = file_hash(file);
   MeshFile read = read_mesh(file);
   part.mesh = std::move(read.mesh);
   part.warnings = std::move(read.warnings);
   for (std::string& note : repair_mesh(part.mesh, file).notes) {
     part.warnings.push_back(file + ": " + note);
   }
-  part.source.file = file;
-  part.source.hash = file_hash(file);
-  part.source.unit_mm = unit_of(options.units, read);
-  part.source.scale = options.scale;
-  part.source.rotate_deg = options.rotate_deg;
-  transform_mesh(part.mesh, part.source.unit_mm * options.scale, options.rotate_deg);
+  part.source.placement = placement;
+  part.source.placement.unit_mm = unit_mm.value_or(read.unit_mm);
+  part.request.where = file;
+  part.request.size_mm = transform_part(part.mesh, part.source.placement, file);
+  part.request.at_mm = placement.at_mm;
+  part.request.unit_declared = read.unit_declared || unit_mm.has_value();
+  const std::string doubt = doubtful_size(part.request);
+  if (!doubt.empty()) part.warnings.push_back(file + ": " + doubt);
   return part;
 }
 
@@ -174,11 +170,7 @@ std::shared_ptr<const Mesh> reload_parts(const JobHeader& header, const std::str
       throw Error(ErrorKind::kBadInput, file,
                   "has changed since this job was made from it; slice it again");
     }
-    Part part = load_part(file, {"", source.scale, source.rotate_deg});
-    // The unit may have been given by hand, so the job's own figure counts.
-    if (part.source.unit_mm != source.unit_mm) {
-      throw Error(ErrorKind::kBadInput, file, "declares another unit than this job was made with");
-    }
+    Part part = load_part(file, source.placement.unit_mm, source.placement);
     part.source = source;
     parts.push_back(std::move(part));
   }

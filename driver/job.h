@@ -4,12 +4,14 @@
 
 #include <array>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "driver/profile.h"
 #include "slicer/grid.h"
 #include "slicer/mesh.h"
+#include "slicer/place.h"
 
 namespace binderjet {
 
@@ -17,9 +19,7 @@ namespace binderjet {
 struct Source {
   std::string file;  // as it was given
   std::string hash;  // of the file's bytes when it was sliced
-  double unit_mm = 1;
-  double scale = 1;
-  std::array<double, 3> rotate_deg{};
+  Placement placement;
   std::array<int, 2> corner_px{};  // the part's lower corner on the bed
 };
 
@@ -45,14 +45,14 @@ JobHeader parse_job_header(const std::string& text, const std::string& where);
 struct Part {
   Mesh mesh;
   Source source;  // corner_px is not yet decided
+  BedRequest request;
   std::vector<std::string> warnings;
 };
-struct PartOptions {
-  std::string units;  // "" = what the file declares, else mm
-  double scale = 1;
-  std::array<double, 3> rotate_deg{};
-};
-Part load_part(const std::string& file, const PartOptions& options);
+// `unit_mm` overrides what the file declares.
+Part load_part(const std::string& file, std::optional<double> unit_mm, const Placement& placement);
+
+// The lower corner of all parts on the bed, in pixels.
+std::array<int, 2> lower_corner(const std::vector<Source>& sources);
 
 // The parts as one mesh in the job's coordinates: the lower corner of them all at (0, 0, 0).
 Mesh merge_parts(std::vector<Part> parts, const Grid& grid);

@@ -28,7 +28,8 @@ struct SliceOptions {
   std::string out;
   std::string enhance = "none";
   std::optional<double> layer_mm;
-  PartOptions part;
+  std::string units;
+  Placement placement;
   std::vector<std::string> at;
   std::string layers;
 };
@@ -71,55 +72,58 @@ LayerRange layer_range(const std::string& text, int layers) {
   return range;
 }
 
-// Decides where each part stands: where --at says, else side by side around the bed's centre.
-void place_parts(std::vector<Part>& parts, const SliceOptions& options, const Grid& grid,
-                 const Profile& profile) {
-  if (options.at.size() > parts.size()) {
+std::optional<double> unit_of(const std::string& word) {
+  if (word.empty()) return std::nullopt;
+  const std::optional<double> unit_mm = unit_from_word(word);
+  if (!unit_mm) {
+    throw Error(ErrorKind::kUsage, "--units", "\"" + word + "\" is not one of um, mm, cm, m, in, ft");
+  }
+  return unit_mm;
+}
+
+// Reads the parts and decides where each stands: where --at says, else as they fit.
+std::vector<Part> load_parts(const SliceOptions& options, const JobHeader& header) {
+  if (options.at.size() > options.parts.size()) {
     throw Error(ErrorKind::kUsage, "--at", "is given more often than there are parts");
   }
-  std::vector<PartBox> boxes;
-  for (std::size_t i = 0; i < parts.size(); ++i) {
-    PartBox box{parts[i].source.file, bounding_box(parts[i].mesh), std::nullopt};
+  const std::optional<double> unit_mm = unit_of(options.units);
+  std::vector<Part> parts;
+  std::vector<BedRequest> requests;
+  for (std::size_t i = 0; i < options.parts.size(); ++i) {
+    Placement placement = options.placement;
     if (i < options.at.size()) {
       const auto at = split<double>("--at", options.at[i], ',', 2);
       if (!at[0] || !at[1]) throw Error(ErrorKind::kUsage, "--at", "needs X,Y in mm");
-      box.at_mm = {*at[0], *at[1]};
+      placement.at_mm = {*at[0], *at[1]};
     }
-    boxes.push_back(box);
+    parts.push_back(load_part(options.parts[i], unit_mm, placement));
+    requests.push_back(parts.back().request);
   }
-  const std::vector<BedSpot> spots = place_on_bed(boxes, profile.bed_mm, grid);
+  const Bed bed{header.profile.bed_mm, {header.grid.pitch_mm[0], header.grid.pitch_mm[1]}};
+  constexpr double kSpacingMm = 2;
+  const std::vector<BedSpot> spots = place_parts(requests, bed, kSpacingMm);
   for (std::size_t i = 0; i < parts.size(); ++i) {
     parts[i].source.corner_px = {spots[i].x_px, spots[i].y_px};
   }
-}
-
-JobHeader plan_job(const SliceOptions& options, std::vector<Part>& parts) {
-  JobHeader header;
-  header.profile = load_profile(options.profile);
-  header.grid = header.profile.grid(options.layer_mm);
-  header.enhance = options.enhance;
-  for (const std::string& file : options.parts) parts.push_back(load_part(file, options.part));
-  place_parts(parts, options, header.grid, header.profile);
-  for (const Part& part : parts) header.sources.push_back(part.source);
-  return header;
+  return parts;
 }
 
 void slice(const SliceOptions& options, const Console& console) {
   const auto start = std::chrono::steady_clock::now();
-  std::vector<Part> parts;
-  JobHeader header = plan_job(options, parts);
+  JobHeader header;
+  header.profile = load_profile(options.profile);
+  header.grid = header.profile.grid(options.layer_mm);
+  header.enhance = options.enhance;
+  std::vector<Part> parts = load_parts(options, header);
   std::vector<std::string> warnings;
-  std::array<int, 2> corner = header.sources.front().corner_px;
   for (const Part& part : parts) {
+    header.sources.push_back(part.source);
     warnings.insert(warnings.end(), part.warnings.begin(), part.warnings.end());
-    for (std::size_t axis = 0; axis < 2; ++axis) {
-      corner[axis] = std::min(corner[axis], part.source.corner_px[axis]);
-    }
   }
   for (const std::string& warning : warnings) console.warning(warning);
 
   const auto mesh = std::make_shared<const Mesh>(merge_parts(std::move(parts), header.grid));
-  header.box = job_box(bounding_box(*mesh), header.grid, corner,
+  header.box = job_box(bounding_box(*mesh), header.grid, lower_corner(header.sources),
                        PrinterModel(header.profile.effects, header.grid).reach().xy_vx);
   const LayerRange range = layer_range(options.layers, header.layers());
 
@@ -160,12 +164,12 @@ void add_slice_verb(CLI::App& program) {
       ->check(CLI::IsMember({"none"}))
       ->capture_default_str();
   verb->add_option("--layer", options->layer_mm, "layer height in mm, one the printer has");
-  verb->add_option("--scale", options->part.scale, "scale factor")
+  verb->add_option("--scale", options->placement.scale, "scale factor")
       ->check(CLI::PositiveNumber)
       ->capture_default_str();
-  verb->add_option("--units", options->part.units,
+  verb->add_option("--units", options->units,
                    "the model's unit: mm, cm, m, um, in, ft (default: what the file says, else mm)");
-  verb->add_option("--rotate", options->part.rotate_deg, "turn about x, then y, then z, in degrees")
+  verb->add_option("--rotate", options->placement.rotate_deg, "turn about x, then y, then z, in degrees")
       ->delimiter(',');
   verb->add_option("--at", options->at,
                    "X,Y in mm: the part's lower corner on the bed; once per part")
