@@ -79,6 +79,15 @@ std::string to_text(const JobHeader& header) {
   return json.dump();
 }
 
+std::unique_ptr<Stream<MaskLayer>> mask_stream(const JobHeader& header,
+                                               std::shared_ptr<const Mesh> mesh,
+                                               LayerRange layers) {
+  if (header.enhance == "none") return plain_masks(std::move(mesh), header.grid, header.box, layers);
+  auto model = std::make_shared<const PrinterModel>(header.profile.effects, header.grid);
+  return paper_masks(std::move(mesh), header.grid, header.box, layers, std::move(model),
+                     header.passes);
+}
+
 JobHeader parse_job_header(const std::string& text, const std::string& where) {
   try {
     const Json json = Json::parse(text);

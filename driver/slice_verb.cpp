@@ -16,7 +16,6 @@
 #include "driver/verbs.h"
 #include "slicer/effects/model.h"
 #include "slicer/masks.h"
-#include "slicer/place.h"
 #include "transport/job_file.h"
 
 namespace binderjet {
@@ -27,6 +26,7 @@ struct SliceOptions {
   std::string profile;
   std::string out;
   std::string enhance = "none";
+  int passes = 2;
   std::optional<double> layer_mm;
   std::string units;
   Placement placement;
@@ -108,12 +108,20 @@ std::vector<Part> load_parts(const SliceOptions& options, const JobHeader& heade
   return parts;
 }
 
+EncodedLayer encode(int layer, const MaskLayer& masks) {
+  EncodedLayer out{encode_record(RecordKind::kMask, layer, pack(masks.mask)), masks.mask.count(),
+                   0};
+  for (const RunLayer& slice : masks.target->slices) out.target_vx += slice.count();
+  return out;
+}
+
 void slice(const SliceOptions& options, const Console& console) {
   const auto start = std::chrono::steady_clock::now();
   JobHeader header;
   header.profile = load_profile(options.profile);
   header.grid = header.profile.grid(options.layer_mm);
   header.enhance = options.enhance;
+  header.passes = options.enhance == "paper" ? options.passes : 0;
   std::vector<Part> parts = load_parts(options, header);
   std::vector<std::string> warnings;
   for (const Part& part : parts) {
@@ -130,12 +138,8 @@ void slice(const SliceOptions& options, const Console& console) {
   JobWriter writer = value_or_throw(JobWriter::create(options.out, to_text(header)));
   Progress progress(console, "slicing", range.size());
   using Encode = Step<MaskLayer, EncodedLayer>;
-  Encode stream(masks(mesh, header.grid, header.box, range), range, 0, header.layers(),
-                [](int layer, Encode::Window window) {
-                  const MaskLayer& mask = *window.front();
-                  return EncodedLayer{encode_record(RecordKind::kMask, layer, pack(mask.mask)),
-                                      mask.mask.count(), mask.target_vx};
-                });
+  Encode stream(mask_stream(header, mesh, range), range, 0, header.layers(),
+                [](int layer, Encode::Window window) { return encode(layer, *window[0]); });
   Totals totals;
   while (stream.rest().size() > 0) {
     for (const Shared<EncodedLayer>& layer : stream.next(kBlockLayers)) {
@@ -161,7 +165,10 @@ void add_slice_verb(CLI::App& program) {
       ->required();
   verb->add_option("-o,--output", options->out, "the job to write (.bjob)")->required();
   verb->add_option("--enhance", options->enhance, "how masks answer the printer's blur")
-      ->check(CLI::IsMember({"none"}))
+      ->check(CLI::IsMember({"none", "paper"}))
+      ->capture_default_str();
+  verb->add_option("--passes", options->passes, "passes of the paper's rule")
+      ->check(CLI::Range(1, 16))
       ->capture_default_str();
   verb->add_option("--layer", options->layer_mm, "layer height in mm, one the printer has");
   verb->add_option("--scale", options->placement.scale, "scale factor")

@@ -2,23 +2,35 @@
 // From a placed mesh to the masks that are sent, as one stream.
 #pragma once
 
-#include <cstdint>
 #include <memory>
 
+#include "slicer/effects/model.h"
 #include "slicer/grid.h"
 #include "slicer/mesh.h"
 #include "slicer/run_layer.h"
 #include "slicer/stream.h"
+#include "slicer/voxelize.h"
 
 namespace binderjet {
 
 struct MaskLayer {
-  RunLayer mask;                // at the printer grid
-  std::int64_t target_vx = 0;  // solid voxels of the target in this layer
+  RunLayer mask;              // at the printer grid
+  Shared<VoxelLayer> target;  // what it is meant to become
 };
 
-// The masks of `layers` of a part whose lower corner is at (0, 0, 0).
-std::unique_ptr<Stream<MaskLayer>> masks(std::shared_ptr<const Mesh> mesh, const Grid& grid,
-                                         const JobBox& box, LayerRange layers);
+// The masks of `layers` as the target is: no enhancement. The part's lower corner is at (0, 0, 0).
+std::unique_ptr<Stream<MaskLayer>> plain_masks(std::shared_ptr<const Mesh> mesh, const Grid& grid,
+                                               const JobBox& box, LayerRange layers);
+
+// The masks after `passes` passes of the paper's rule (slicer/enhance/paper_rule.h).
+//
+// The paper (4.5) holds 2 + rz voxel layers per pass: one done, the current one, and those of the
+// next printed layer. Here a pass computes whole printed layers and needs the layer below and the
+// one above, so it holds 3 rz voxel layers, and kBlockLayers - 1 more printed layers to keep the
+// cores busy; as runs these are smaller than the paper's four layers of voxels.
+std::unique_ptr<Stream<MaskLayer>> paper_masks(std::shared_ptr<const Mesh> mesh, const Grid& grid,
+                                               const JobBox& box, LayerRange layers,
+                                               std::shared_ptr<const PrinterModel> model,
+                                               int passes);
 
 }  // namespace binderjet
