@@ -17,6 +17,8 @@ int main(int argc, char** argv) {
   program.require_subcommand(1);
   add_slice_verb(program);
   add_export_verb(program);
+  add_simulate_verb(program);
+  add_score_verb(program);
   add_join_verb(program);
   add_print_verb(program);
   add_profile_verb(program);

@@ -9,6 +9,7 @@
 
 #include "slicer/effects/effect.h"
 #include "slicer/grid.h"
+#include "slicer/place.h"
 
 namespace binderjet {
 
@@ -33,6 +34,7 @@ struct Profile {
 
   // The grid with the default layer or the one asked for; Error{kUsage} if the printer has no such.
   Grid grid(std::optional<double> layer) const;
+  Bed bed(const Grid& grid) const { return {bed_mm, {grid.pitch_mm[0], grid.pitch_mm[1]}}; }
 };
 
 // Where profiles are looked for by name: the source tree's folder, then the installed one.

@@ -99,9 +99,8 @@ std::vector<Part> load_parts(const SliceOptions& options, const JobHeader& heade
     parts.push_back(load_part(options.parts[i], unit_mm, placement));
     requests.push_back(parts.back().request);
   }
-  const Bed bed{header.profile.bed_mm, {header.grid.pitch_mm[0], header.grid.pitch_mm[1]}};
   constexpr double kSpacingMm = 2;
-  const std::vector<BedSpot> spots = place_parts(requests, bed, kSpacingMm);
+  const std::vector<BedSpot> spots = place_parts(requests, header.profile.bed(header.grid), kSpacingMm);
   for (std::size_t i = 0; i < parts.size(); ++i) {
     parts[i].source.corner_px = {spots[i].x_px, spots[i].y_px};
   }

@@ -14,5 +14,7 @@ void add_export_verb(CLI::App& program);
 void add_join_verb(CLI::App& program);
 void add_print_verb(CLI::App& program);
 void add_profile_verb(CLI::App& program);
+void add_simulate_verb(CLI::App& program);
+void add_score_verb(CLI::App& program);
 
 }  // namespace binderjet

@@ -3,7 +3,9 @@
 #pragma once
 
 #include <array>
+#include <cstdint>
 #include <string>
+#include <vector>
 
 #include "slicer/run_layer.h"
 
@@ -21,6 +23,7 @@ struct StackInfo {
   std::array<double, 3> origin_mm{};
   std::string files;  // printf pattern with one %d, e.g. "mask_%06d.png"
   int first = 0;      // the number of the first image
+  int threshold = 128;  // an 8-bit sample is solid from here on
 };
 
 // Writes a stack under a temporary name beside `folder`; finish() gives it its name. A stack that
@@ -44,6 +47,25 @@ class StackWriter {
  private:
   std::string folder_;
   std::string part_;  // the temporary name; empty once finished
+  StackInfo info_;
+};
+
+// Reads a stack that anybody wrote: any image format that OpenImageIO reads, 1-bit or grey.
+class StackReader {
+ public:
+  // Error{kBadInput} if stack.json is not there, not one of ours or names a missing image.
+  explicit StackReader(const std::string& folder);
+
+  const StackInfo& info() const { return info_; }
+  // Image `index`, solid where 1 (1-bit) or >= threshold; threads may read different ones at once.
+  RunLayer read(int index) const;
+  // The same as grey values, row 0 first.
+  std::vector<std::uint8_t> read_grey(int index) const;
+
+ private:
+  std::string image_path(int index) const;
+
+  std::string folder_;
   StackInfo info_;
 };
 
