@@ -46,7 +46,7 @@ std::string lines(const std::vector<std::string>& all) {
 }
 
 JobStatus find_job(const Options& options) {
-  const auto backend = value_or_throw(open_backend(options.to));
+  const auto backend = backend_at(options.to);
   for (JobStatus& job : value_or_throw(backend->status())) {
     if (job.id == options.id) return std::move(job);
   }
@@ -61,7 +61,7 @@ void status(const Console& console, const Options& options) {
     console.result(to_json(job), to_line(job));
     return;
   }
-  const auto backend = value_or_throw(open_backend(options.to));
+  const auto backend = backend_at(options.to);
   nlohmann::ordered_json result;
   result["jobs"] = nlohmann::ordered_json::array();
   std::vector<std::string> text;
@@ -73,7 +73,7 @@ void status(const Console& console, const Options& options) {
 }
 
 void cancel(const Console& console, const Options& options) {
-  const auto backend = value_or_throw(open_backend(options.to));
+  const auto backend = backend_at(options.to);
   value_or_throw(backend->cancel(options.id));
   nlohmann::ordered_json result;
   result["job"] = options.id;
@@ -97,7 +97,7 @@ void devices(const Console& console, const Options& options) {
   result["devices"] = nlohmann::ordered_json::array();
   std::vector<std::string> text;
   if (!options.to.empty()) {
-    const DeviceStatus device = value_or_throw(value_or_throw(open_backend(options.to))->device());
+    const DeviceStatus device = value_or_throw(backend_at(options.to)->device());
     nlohmann::ordered_json object;
     object["uri"] = device.uri;
     object["description"] = device.description;

@@ -42,6 +42,12 @@ std::string how_to_resume(Backend& backend, const std::string& id, const std::st
 
 }  // namespace
 
+std::unique_ptr<Backend> backend_at(const std::string& uri) {
+  Result<std::unique_ptr<Backend>> backend = open_backend(uri);
+  if (!backend) throw Error(ErrorKind::kUsage, backend.error().where, backend.error().what);
+  return std::move(*backend);
+}
+
 void send_job(const Console& console, const std::string& job_path, const std::string& uri,
               const std::optional<std::string>& resumed) {
   const auto start_time = std::chrono::steady_clock::now();
@@ -52,7 +58,7 @@ void send_job(const Console& console, const std::string& job_path, const std::st
   ticket.name = fs::path(job_path).filename().string();
   ticket.source = fs::absolute(job_path).lexically_normal().string();
 
-  std::unique_ptr<Backend> backend = value_or_throw(open_backend(uri));
+  std::unique_ptr<Backend> backend = backend_at(uri);
   std::string id;
   std::uint64_t bytes = 0;
   int first = 0;
@@ -73,7 +79,7 @@ void send_job(const Console& console, const std::string& job_path, const std::st
     value_or_throw(backend->end());
   } catch (const Error& error) {
     backend.reset();  // holds the job
-    backend = value_or_throw(open_backend(uri));
+    backend = backend_at(uri);
     throw Error(error.kind(), "", error.what() + how_to_resume(*backend, id, uri));
   }
 

@@ -15,6 +15,9 @@ class App;
 
 namespace binderjet {
 
+// Throws Error{kUsage} for a URI that names no backend.
+std::unique_ptr<Backend> backend_at(const std::string& uri);
+
 // Prints `job_path` to `uri`, or goes on with the job `resumed` there; says the result.
 // Throws Error; one that ends a job that can be resumed says how.
 void send_job(const Console& console, const std::string& job_path, const std::string& uri,
