@@ -38,6 +38,9 @@ class JobWriter {
   static Result<JobWriter> reopen_kept(const std::string& part, const std::string& path,
                                        std::uint64_t bytes);
 
+  // The unfinished file got another name.
+  void move_part(const std::string& part) { part_ = part; }
+
   JobWriter(JobWriter&& other) noexcept = default;
   JobWriter& operator=(JobWriter&& other) noexcept;
   ~JobWriter();

@@ -1,0 +1,148 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// devices, status, cancel and resume: what became of the jobs, and what to do with them.
+#include <fmt/core.h>
+
+#include <CLI/CLI.hpp>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "driver/console.h"
+#include "driver/result.h"
+#include "driver/send.h"
+#include "slicer/error.h"
+
+namespace binderjet {
+namespace {
+
+struct Options {
+  std::string id;
+  std::string to;
+  std::string job;
+};
+
+nlohmann::ordered_json to_json(const JobStatus& job) {
+  nlohmann::ordered_json object;
+  object["job"] = job.id;
+  object["state"] = job_state_word(job.state);
+  object["layers"] = job.layer_count;
+  object["acknowledged"] = job.acknowledged;
+  object["name"] = job.name;
+  object["source"] = job.source;
+  object["reason"] = job.reason;
+  return object;
+}
+
+std::string to_line(const JobStatus& job) {
+  return fmt::format("{:>6}  {:8}  {:>6} of {:<6}  {}{}{}", job.id, job_state_word(job.state),
+                     job.acknowledged, job.layer_count, job.name, job.reason.empty() ? "" : "  ",
+                     job.reason);
+}
+
+std::string lines(const std::vector<std::string>& all) {
+  std::string text;
+  for (const std::string& line : all) text += (text.empty() ? "" : "\n") + line;
+  return text;
+}
+
+JobStatus find_job(const Options& options) {
+  const auto backend = backend_at(options.to);
+  for (JobStatus& job : value_or_throw(backend->status())) {
+    if (job.id == options.id) return std::move(job);
+  }
+  throw Error(ErrorKind::kBadInput, options.to,
+              fmt::format("no job {} is here; `binderjet status --to {}` lists the jobs",
+                          options.id, options.to));
+}
+
+void status(const Console& console, const Options& options) {
+  if (!options.id.empty()) {
+    const JobStatus job = find_job(options);
+    console.result(to_json(job), to_line(job));
+    return;
+  }
+  const auto backend = backend_at(options.to);
+  nlohmann::ordered_json result;
+  result["jobs"] = nlohmann::ordered_json::array();
+  std::vector<std::string> text;
+  for (const JobStatus& job : value_or_throw(backend->status())) {
+    result["jobs"].push_back(to_json(job));
+    text.push_back(to_line(job));
+  }
+  console.result(result, text.empty() ? "no jobs" : lines(text));
+}
+
+void cancel(const Console& console, const Options& options) {
+  const auto backend = backend_at(options.to);
+  value_or_throw(backend->cancel(options.id));
+  nlohmann::ordered_json result;
+  result["job"] = options.id;
+  result["cancelled"] = true;
+  console.result(result, fmt::format("job {} is cancelled", options.id));
+}
+
+void resume(const Console& console, const Options& options) {
+  std::string source = options.job;
+  if (source.empty()) source = find_job(options).source;
+  if (source.empty()) {
+    throw Error(
+        ErrorKind::kBadInput, options.to,
+        fmt::format("job {} does not say which file it came from: name it with --job", options.id));
+  }
+  send_job(console, source, options.to, options.id);
+}
+
+void devices(const Console& console, const Options& options) {
+  nlohmann::ordered_json result;
+  result["devices"] = nlohmann::ordered_json::array();
+  std::vector<std::string> text;
+  if (!options.to.empty()) {
+    const DeviceStatus device = value_or_throw(backend_at(options.to)->device());
+    nlohmann::ordered_json object;
+    object["uri"] = device.uri;
+    object["description"] = device.description;
+    object["state"] = device.state;
+    result["devices"].push_back(std::move(object));
+    text.push_back(fmt::format("{}  {}  {}", device.uri, device.state, device.description));
+  }
+  console.result(result,
+                 text.empty() ? "no devices; --to spool:DIR looks at a spool" : lines(text));
+}
+
+using Run = void (*)(const Console&, const Options&);
+
+CLI::App* add_verb(CLI::App& program, const char* name, const char* help, Run run,
+                   const std::shared_ptr<Options>& options) {
+  CLI::App* verb = program.add_subcommand(name, help);
+  const auto console = add_console_options(*verb);
+  verb->callback([run, console, options] { run(*console, *options); });
+  return verb;
+}
+
+}  // namespace
+
+void add_queue_verbs(CLI::App& program) {
+  const char* to_help = "which spool: spool:DIR";
+  auto options = std::make_shared<Options>();
+  CLI::App* verb = add_verb(program, "status", "list the jobs, or say how one is", status, options);
+  verb->add_option("JOBID", options->id, "the job; without it: all");
+  verb->add_option("--to", options->to, to_help)->required();
+
+  options = std::make_shared<Options>();
+  verb = add_verb(program, "cancel", "stop a job and remove it", cancel, options);
+  verb->add_option("JOBID", options->id, "the job")->required();
+  verb->add_option("--to", options->to, to_help)->required();
+
+  options = std::make_shared<Options>();
+  verb = add_verb(program, "resume", "go on with a held job from its last acknowledged layer",
+                  resume, options);
+  verb->add_option("JOBID", options->id, "the job")->required();
+  verb->add_option("--to", options->to, to_help)->required();
+  verb->add_option("--job", options->job, "its job file, if that has moved");
+
+  options = std::make_shared<Options>();
+  verb = add_verb(program, "devices", "list what can print", devices, options);
+  verb->add_option("--to", options->to, to_help);
+}
+
+}  // namespace binderjet
