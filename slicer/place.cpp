@@ -99,8 +99,9 @@ class Layout {
       scale = std::min(scale, bed_.pixels(axis) * bed_.pitch_mm[a] / size[a]);
     }
     // Two digits, rounded down, so that the advice is easy to type and true.
-    const double step = std::pow(10.0, std::floor(std::log10(scale)) - 1);
-    std::string hint = fmt::format("; --scale {:.2g} would", std::floor(scale / step) * step);
+    const double advice = scale * part.scale;
+    const double step = std::pow(10.0, std::floor(std::log10(advice)) - 1);
+    std::string hint = fmt::format("; --scale {:.2g} would", std::floor(advice / step) * step);
     const auto turned = [&](int a, int b) {
       Point other = size;
       std::swap(other[static_cast<std::size_t>(a)], other[static_cast<std::size_t>(b)]);

@@ -12,8 +12,8 @@
 namespace binderjet {
 
 struct Placement {
-  double unit_mm = 1.0;                        // what one unit of the file is
-  double scale = 1.0;                          //
+  double unit_mm = 1.0;  // what one unit of the file is
+  double scale = 1.0;
   std::array<double, 3> rotate_deg{};          // about x, then y, then z
   std::optional<std::array<double, 2>> at_mm;  // lower corner of the box on the bed; none: chosen
 };
@@ -38,6 +38,7 @@ struct BedRequest {
   Point size_mm{};
   std::optional<std::array<double, 2>> at_mm;
   bool unit_declared = false;
+  double scale = 1.0;  // the --scale that led to this size, for advice
 };
 
 // um, mm, cm, m, in, ft as millimetres; none for another word.
