@@ -56,7 +56,7 @@ inline std::size_t random_below(std::mt19937_64& random, std::size_t bound) {
 
 // Every layer differs, compresses somewhat, and is the same in every run.
 inline std::vector<std::byte> sample_payload(RecordKind kind, int layer) {
-  std::mt19937 random(static_cast<unsigned>(layer) * 8 + static_cast<unsigned>(kind));
+  std::minstd_rand random(static_cast<unsigned>(layer) * 8 + static_cast<unsigned>(kind));
   std::vector<std::byte> payload(300 + random() % 400);
   for (std::size_t i = 0; i < payload.size(); ++i) {
     payload[i] = i % 3 == 0 ? static_cast<std::byte>(random()) : std::byte{0};

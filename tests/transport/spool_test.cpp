@@ -235,11 +235,13 @@ TEST_F(SpoolTest, ResumesWithAJournalCutAnywhere) {
   const std::string journal_path = spool_ + "/held/" + id + "/journal";
   const std::string journal = file_text(journal_path);
   const std::string part = file_text(spool_ + "/held/" + id + "/job.part");
+  // Longer than the rest of the job, which would otherwise hide it.
+  const std::string rubbish(whole_text().size(), 'x');
   const std::size_t start_line = journal.find('\n') + 1;
   for (std::size_t length = start_line; length <= journal.size(); length += 3) {
     std::filesystem::create_directories(spool_ + "/held/" + id);
     write_text(journal_path, journal.substr(0, length));
-    write_text(spool_ + "/held/" + id + "/job.part", part + "rubbish behind the last whole layer");
+    write_text(spool_ + "/held/" + id + "/job.part", part + rubbish);
     {
       const auto sender = backend();
       const auto first = sender->resume(id, ticket_);
