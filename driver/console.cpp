@@ -65,8 +65,9 @@ void Progress::advance(int done) {
   const double rate = done / seconds;
   constexpr int kBar = 30;
   const int full = static_cast<int>(static_cast<long long>(kBar) * done / std::max(1, total_));
-  fmt::print(stderr, "\r\033[K{} [{:#<{}}{: <{}}] {}/{} layers, {:.0f}/s, {} left", label_, "", full,
-             "", kBar - full, done, total_, rate, minutes_and_seconds((total_ - done) / rate));
+  fmt::print(stderr, "\r\033[K{} [{:#<{}}{: <{}}] {}/{} layers, {:.0f}/s, {} left", label_, "",
+             full, "", kBar - full, done, total_, rate,
+             minutes_and_seconds((total_ - done) / rate));
   std::fflush(stderr);
 }
 

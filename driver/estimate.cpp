@@ -43,13 +43,13 @@ void report(const JobHeader& header, const Totals& totals, const std::string& ou
                                        {"binder_ml", binder_ml},
                                        {"warnings", warnings}};
   console.result(
-      json, fmt::format("{}: {} layers of {} x {} pixels, {:.2f} s\n"
-                        "printing takes about {} ({:g} to {:g} layers a minute, {} to dry), "
-                        "about {:.1f} ml of binder",
-                        out, totals.layers, header.box.size_px[0], header.box.size_px[1],
-                        totals.seconds, hours_and_minutes(print_minutes),
-                        profile.layers_per_minute[0], profile.layers_per_minute[1],
-                        hours_and_minutes(profile.dry_minutes), binder_ml));
+      json,
+      fmt::format("{}: {} layers of {} x {} pixels, {:.2f} s\n"
+                  "printing takes about {} ({:g} to {:g} layers a minute, {} to dry), "
+                  "about {:.1f} ml of binder",
+                  out, totals.layers, header.box.size_px[0], header.box.size_px[1], totals.seconds,
+                  hours_and_minutes(print_minutes), profile.layers_per_minute[0],
+                  profile.layers_per_minute[1], hours_and_minutes(profile.dry_minutes), binder_ml));
 }
 
 }  // namespace binderjet

@@ -14,8 +14,8 @@
 #include "driver/printed.h"
 #include "driver/verbs.h"
 #include "slicer/error.h"
-#include "slicer/cuberille.h"
-#include "slicer/slice_stack.h"
+#include "slicer/stack/cuberille.h"
+#include "slicer/stack/slice_stack.h"
 #include "slicer/voxelize.h"
 
 namespace binderjet {
@@ -81,8 +81,9 @@ void export_target(const MaskSource& job, const ExportOptions& options, const Co
   while (target->rest().size() > 0) {
     const auto block = target->next(kBlockLayers);
     oneapi::tbb::parallel_for(0, static_cast<int>(block.size()) * rz, [&](int s) {
-      stack.write(done * rz + s,
-                  block[static_cast<std::size_t>(s / rz)]->slices[static_cast<std::size_t>(s % rz)]);
+      stack.write(
+          done * rz + s,
+          block[static_cast<std::size_t>(s / rz)]->slices[static_cast<std::size_t>(s % rz)]);
     });
     done += static_cast<int>(block.size());
     progress.advance(done);
@@ -130,7 +131,9 @@ void add_export_verb(CLI::App& program) {
   auto options = std::make_shared<ExportOptions>();
   verb->add_option("JOB", options->job, "a job (.bjob)")->required();
   verb->add_option("-o,--output", options->out, "the folder to write: stack.json and PNGs");
-  verb->add_option("--what", options->what, "mask: what is sent; target: the voxels we want; printed: what the model says comes out")
+  verb->add_option(
+          "--what", options->what,
+          "mask: what is sent; target: the voxels we want; printed: what the model says comes out")
       ->check(CLI::IsMember({"mask", "target", "printed"}))
       ->capture_default_str();
   verb->add_flag("--full-bed", options->full_bed, "masks of the whole bed, the part in its place");

@@ -17,8 +17,7 @@ namespace {
 
 template <class Take>
 void for_each_piece(const std::string& path, Take take) {
-  std::unique_ptr<std::FILE, int (*)(std::FILE*)> file(std::fopen(path.c_str(), "rb"),
-                                                        std::fclose);
+  std::unique_ptr<std::FILE, int (*)(std::FILE*)> file(std::fopen(path.c_str(), "rb"), std::fclose);
   std::vector<char> piece(1 << 20);
   while (file) {
     const std::size_t got = std::fread(piece.data(), 1, piece.size(), file.get());
@@ -50,6 +49,8 @@ std::string file_hash(const std::string& path) {
   return hex(XXH3_64bits_digest(state.get()));
 }
 
-std::string text_hash(const std::string& text) { return hex(XXH3_64bits(text.data(), text.size())); }
+std::string text_hash(const std::string& text) {
+  return hex(XXH3_64bits(text.data(), text.size()));
+}
 
 }  // namespace binderjet

@@ -10,8 +10,8 @@
 
 #include "driver/files.h"
 #include "slicer/error.h"
-#include "slicer/read_mesh.h"
-#include "slicer/repair.h"
+#include "slicer/mesh/read_mesh.h"
+#include "slicer/mesh/repair.h"
 
 namespace binderjet {
 namespace {
@@ -19,7 +19,8 @@ namespace {
 using Json = nlohmann::ordered_json;
 
 Json to_json(const Source& source) {
-  return {{"file", source.file},           {"hash", source.hash},
+  return {{"file", source.file},
+          {"hash", source.hash},
           {"unit_mm", source.placement.unit_mm},
           {"scale", source.placement.scale},
           {"rotate_deg", source.placement.rotate_deg},
@@ -82,7 +83,8 @@ std::string to_text(const JobHeader& header) {
 std::unique_ptr<Stream<MaskLayer>> mask_stream(const JobHeader& header,
                                                std::shared_ptr<const Mesh> mesh,
                                                LayerRange layers) {
-  if (header.enhance == "none") return plain_masks(std::move(mesh), header.grid, header.box, layers);
+  if (header.enhance == "none")
+    return plain_masks(std::move(mesh), header.grid, header.box, layers);
   auto model = std::make_shared<const PrinterModel>(header.profile.effects, header.grid);
   return paper_masks(std::move(mesh), header.grid, header.box, layers, std::move(model),
                      header.passes);
@@ -116,22 +118,22 @@ JobHeader parse_job_header(const std::string& text, const std::string& where) {
   }
 }
 
-Part load_part(const std::string& file, std::optional<double> unit_mm,
-               const Placement& placement) {
+Part load_part(const std::string& file, std::optional<double> unit_mm, const Placement& placement) {
   Part part;
   part.source.file = file;
   part.source.hash = file_hash(file);
   MeshFile read = read_mesh(file);
   part.mesh = std::move(read.mesh);
   part.warnings = std::move(read.warnings);
-  for (std::string& note : repair_mesh(part.mesh, file).notes) {
-    part.warnings.push_back(file + ": " + note);
-  }
+  const Repair repair = repair_mesh(part.mesh, file);
+  for (const std::string& note : repair.notes) part.warnings.push_back(file + ": " + note);
+  for (const std::string& remark : repair.remarks) part.warnings.push_back(file + ": " + remark);
   part.source.placement = placement;
   part.source.placement.unit_mm = unit_mm.value_or(read.unit_mm);
   part.request.where = file;
   part.request.size_mm = transform_part(part.mesh, part.source.placement, file);
   part.request.at_mm = placement.at_mm;
+  part.request.scale = placement.scale;
   part.request.unit_declared = read.unit_declared || unit_mm.has_value();
   const std::string doubt = doubtful_size(part.request);
   if (!doubt.empty()) part.warnings.push_back(file + ": " + doubt);

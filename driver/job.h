@@ -11,8 +11,8 @@
 #include "driver/profile.h"
 #include "slicer/grid.h"
 #include "slicer/masks.h"
-#include "slicer/mesh.h"
-#include "slicer/place.h"
+#include "slicer/mesh/mesh.h"
+#include "slicer/mesh/place.h"
 
 namespace binderjet {
 
@@ -41,8 +41,7 @@ struct JobHeader {
 std::string to_text(const JobHeader& header);
 // The masks of `layers` as the job enhances them, from its parts as one mesh.
 std::unique_ptr<Stream<MaskLayer>> mask_stream(const JobHeader& header,
-                                               std::shared_ptr<const Mesh> mesh,
-                                               LayerRange layers);
+                                               std::shared_ptr<const Mesh> mesh, LayerRange layers);
 
 // `where` names the job in messages. Error{kBadInput} if this is no header of ours.
 JobHeader parse_job_header(const std::string& text, const std::string& where);

@@ -11,7 +11,7 @@
 #include "driver/console.h"
 #include "driver/job.h"
 #include "slicer/run_layer.h"
-#include "slicer/slice_stack.h"
+#include "slicer/stack/slice_stack.h"
 #include "slicer/stream.h"
 
 namespace binderjet {

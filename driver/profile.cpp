@@ -2,12 +2,12 @@
 #include "driver/profile.h"
 
 #include <fmt/format.h>
+#include <toml++/toml.h>
 
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
 #include <set>
-#include <toml++/toml.h>
 
 #include "driver/files.h"
 #include "slicer/error.h"
@@ -43,9 +43,9 @@ class Table {
     const toml::node& node = need(key);
     const std::vector<double> values = numbers_of(node, key);
     if (count == 0 ? values.empty() : values.size() != count) {
-      fail(node.source(), count == 0 ? fmt::format("{} must not be empty", key)
-                                     : fmt::format("{} needs {} number{}", key, count,
-                                                   count == 1 ? "" : "s"));
+      fail(node.source(),
+           count == 0 ? fmt::format("{} must not be empty", key)
+                      : fmt::format("{} needs {} number{}", key, count, count == 1 ? "" : "s"));
     }
     for (const double value : values) {
       if (!(value > min && value <= max)) {
@@ -151,9 +151,8 @@ std::array<double, N> fixed(const std::vector<double>& values) {
 Grid Profile::grid(std::optional<double> layer) const {
   double height = layer_mm.front();
   if (layer) {
-    const auto found = std::find_if(layer_mm.begin(), layer_mm.end(), [&](double known) {
-      return std::abs(known - *layer) < 1e-9;
-    });
+    const auto found = std::find_if(layer_mm.begin(), layer_mm.end(),
+                                    [&](double known) { return std::abs(known - *layer) < 1e-9; });
     if (found == layer_mm.end()) {
       throw Error(ErrorKind::kUsage, "--layer",
                   fmt::format("{} prints layers of {} mm, not {}", name,
@@ -197,10 +196,10 @@ Profile parse_profile(const std::string& text, const std::string& path) {
   try {
     parsed = toml::parse(text, path);
   } catch (const toml::parse_error& error) {
-    throw Error(ErrorKind::kBadInput,
-                fmt::format("{}:{}:{}", path, error.source().begin.line,
-                            error.source().begin.column),
-                std::string(error.description()));
+    throw Error(
+        ErrorKind::kBadInput,
+        fmt::format("{}:{}:{}", path, error.source().begin.line, error.source().begin.column),
+        std::string(error.description()));
   }
 
   constexpr double kManyMm = 10000;

@@ -9,7 +9,7 @@
 
 #include "slicer/effects/effect.h"
 #include "slicer/grid.h"
-#include "slicer/place.h"
+#include "slicer/mesh/place.h"
 
 namespace binderjet {
 
@@ -25,9 +25,9 @@ struct Profile {
   std::vector<EffectSpec> effects;  // in the order of the file
   std::array<double, 2> layers_per_minute{};
   double dry_minutes = 0;
-  // Binder volume per volume of wetted powder: 68.4 pl a drop over 63.5 x 59.9 x 50 um (Addit. Manuf.
-  // 39:101870, table 2) is 0.36, 90 % of the pores of powder packed at 60 %. An estimate where
-  // [binder] does not say better.
+  // Binder volume per volume of wetted powder: 68.4 pl a drop over 63.5 x 59.9 x 50 um (Addit.
+  // Manuf. 39:101870, table 2) is 0.36, 90 % of the pores of powder packed at 60 %. An estimate
+  // where [binder] does not say better.
   double binder_per_powder = 0.36;
   std::string protocol;
   std::vector<std::string> usb;  // "vid:pid"
@@ -40,7 +40,8 @@ struct Profile {
 // Where profiles are looked for by name: the source tree's folder, then the installed one.
 std::vector<std::string> profile_folders();
 
-// A name in one of those folders (case does not matter) or a path. Error{kBadInput} with line and column.
+// A name in one of those folders (case does not matter) or a path. Error{kBadInput} with line and
+// column.
 Profile load_profile(const std::string& name_or_path);
 // The profile whose file has this text; `path` is for messages.
 Profile parse_profile(const std::string& text, const std::string& path);

@@ -25,11 +25,10 @@ nlohmann::ordered_json to_json(const Profile& profile) {
     }
     effects.push_back(one);
   }
-  return {{"name", profile.name},         {"path", profile.path},
-          {"source", profile.source},     {"dpi", profile.dpi},
-          {"layer_mm", profile.layer_mm}, {"detail_vx", profile.detail_vx},
-          {"bed_mm", profile.bed_mm},     {"effects", effects},
-          {"protocol", profile.protocol}};
+  return {
+      {"name", profile.name},     {"path", profile.path},         {"source", profile.source},
+      {"dpi", profile.dpi},       {"layer_mm", profile.layer_mm}, {"detail_vx", profile.detail_vx},
+      {"bed_mm", profile.bed_mm}, {"effects", effects},           {"protocol", profile.protocol}};
 }
 
 void list_profiles(const Console& console) {

@@ -42,8 +42,7 @@ std::shared_ptr<const Mesh> load_target(const ScoreOptions& options, const JobHe
 void score(const ScoreOptions& options, const Console& console) {
   const MaskSource job = open_job(options.job, console);
   const JobHeader& header = *job.header;
-  const Profile profile =
-      options.profile.empty() ? header.profile : load_profile(options.profile);
+  const Profile profile = options.profile.empty() ? header.profile : load_profile(options.profile);
   const PrinterModel model(profile.effects, header.grid);
   const auto target = voxelize(load_target(options, header), header.grid, header.box, job.layers());
   const auto printed = printed_stream(job, model);
@@ -68,10 +67,12 @@ void score(const ScoreOptions& options, const Console& console) {
 }  // namespace
 
 void add_score_verb(CLI::App& program) {
-  CLI::App* verb = program.add_subcommand("score", "compare a job's predicted print with its model");
+  CLI::App* verb =
+      program.add_subcommand("score", "compare a job's predicted print with its model");
   auto options = std::make_shared<ScoreOptions>();
   verb->add_option("JOB", options->job, "a job (.bjob)")->required();
-  verb->add_option("--target", options->targets, "the model that is wanted, one per part of the job")
+  verb->add_option("--target", options->targets,
+                   "the model that is wanted, one per part of the job")
       ->required();
   verb->add_option("-p,--profile", options->profile, "another printer than the job's own");
   verb->callback([options, console = add_console_options(*verb)] { score(*options, *console); });

@@ -76,7 +76,8 @@ std::optional<double> unit_of(const std::string& word) {
   if (word.empty()) return std::nullopt;
   const std::optional<double> unit_mm = unit_from_word(word);
   if (!unit_mm) {
-    throw Error(ErrorKind::kUsage, "--units", "\"" + word + "\" is not one of um, mm, cm, m, in, ft");
+    throw Error(ErrorKind::kUsage, "--units",
+                "\"" + word + "\" is not one of um, mm, cm, m, in, ft");
   }
   return unit_mm;
 }
@@ -100,7 +101,8 @@ std::vector<Part> load_parts(const SliceOptions& options, const JobHeader& heade
     requests.push_back(parts.back().request);
   }
   constexpr double kSpacingMm = 2;
-  const std::vector<BedSpot> spots = place_parts(requests, header.profile.bed(header.grid), kSpacingMm);
+  const std::vector<BedSpot> spots =
+      place_parts(requests, header.profile.bed(header.grid), kSpacingMm);
   for (std::size_t i = 0; i < parts.size(); ++i) {
     parts[i].source.corner_px = {spots[i].x_px, spots[i].y_px};
   }
@@ -148,8 +150,7 @@ void slice(const SliceOptions& options, const Console& console) {
     progress.advance(totals.layers);
   }
   value_or_throw(writer.finish());
-  totals.seconds =
-      std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  totals.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   report(header, totals, options.out, warnings, console);
 }
 
@@ -173,9 +174,11 @@ void add_slice_verb(CLI::App& program) {
   verb->add_option("--scale", options->placement.scale, "scale factor")
       ->check(CLI::PositiveNumber)
       ->capture_default_str();
-  verb->add_option("--units", options->units,
-                   "the model's unit: mm, cm, m, um, in, ft (default: what the file says, else mm)");
-  verb->add_option("--rotate", options->placement.rotate_deg, "turn about x, then y, then z, in degrees")
+  verb->add_option(
+      "--units", options->units,
+      "the model's unit: mm, cm, m, um, in, ft (default: what the file says, else mm)");
+  verb->add_option("--rotate", options->placement.rotate_deg,
+                   "turn about x, then y, then z, in degrees")
       ->delimiter(',');
   verb->add_option("--at", options->at,
                    "X,Y in mm: the part's lower corner on the bed; once per part")

@@ -139,8 +139,7 @@ RunLayer box_threshold(const RunLayer& in, std::array<int, 2> repeat, const BoxW
         sign = -sign;
       }
     }
-    std::sort(ramps.begin(), ramps.end(),
-              [](const Ramp& a, const Ramp& b) { return a.at < b.at; });
+    std::sort(ramps.begin(), ramps.end(), [](const Ramp& a, const Ramp& b) { return a.at < b.at; });
     builder.build(ramps);
   }
   return out;

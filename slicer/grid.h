@@ -4,7 +4,7 @@
 
 #include <array>
 
-#include "slicer/mesh.h"
+#include "slicer/mesh/mesh.h"
 
 namespace binderjet {
 

@@ -11,11 +11,11 @@ namespace binderjet {
 std::unique_ptr<Stream<MaskLayer>> plain_masks(std::shared_ptr<const Mesh> mesh, const Grid& grid,
                                                const JobBox& box, LayerRange layers) {
   using Slicing = Step<VoxelLayer, MaskLayer>;
-  return std::make_unique<Slicing>(voxelize(std::move(mesh), grid, box, layers), layers, 0,
-                                   box.size_px[2], [grid](int, Slicing::Window window) {
-                                     return MaskLayer{slicing_operator(*window[0], grid),
-                                                      window[0]};
-                                   });
+  return std::make_unique<Slicing>(
+      voxelize(std::move(mesh), grid, box, layers), layers, 0, box.size_px[2],
+      [grid](int, Slicing::Window window) {
+        return MaskLayer{slicing_operator(*window[0], grid), window[0]};
+      });
 }
 
 std::unique_ptr<Stream<MaskLayer>> paper_masks(std::shared_ptr<const Mesh> mesh, const Grid& grid,

@@ -6,7 +6,7 @@
 
 #include "slicer/effects/model.h"
 #include "slicer/grid.h"
-#include "slicer/mesh.h"
+#include "slicer/mesh/mesh.h"
 #include "slicer/run_layer.h"
 #include "slicer/stream.h"
 #include "slicer/voxelize.h"

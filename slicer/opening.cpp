@@ -40,7 +40,8 @@ RunLayer opening(const RunLayer& layer, std::array<int, 2> size_vx) {
   RunLayer corners(layer.width());
   for (int y = 0; y < layer.height(); ++y) append_combined(layer, y, y + ny, ny, 1 - nx, corners);
   RunLayer opened(layer.width());
-  for (int y = 0; y < layer.height(); ++y) append_combined(corners, y - ny + 1, y + 1, 1, nx - 1, opened);
+  for (int y = 0; y < layer.height(); ++y)
+    append_combined(corners, y - ny + 1, y + 1, 1, nx - 1, opened);
   return opened;
 }
 

@@ -34,7 +34,8 @@ VoxelCounts count_voxels(const VoxelLayer& target, const RunLayer& printed) {
     flips.clear();
     for (const int x : printed.row(y)) flips.emplace_back(x, -1);
     for (int s = 0; s < rz; ++s) {
-      for (const int x : target.slices[static_cast<std::size_t>(s)].row(y)) flips.emplace_back(x, s);
+      for (const int x : target.slices[static_cast<std::size_t>(s)].row(y))
+        flips.emplace_back(x, s);
     }
     std::sort(flips.begin(), flips.end());
 

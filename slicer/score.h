@@ -11,9 +11,9 @@ namespace binderjet {
 
 // Counts of voxels; they add up over rows, layers and shares.
 struct VoxelCounts {
-  std::int64_t solid = 0;      // |target|
-  std::int64_t missing = 0;    // target, not printed
-  std::int64_t extra = 0;      // printed, not target
+  std::int64_t solid = 0;        // |target|
+  std::int64_t missing = 0;      // target, not printed
+  std::int64_t extra = 0;        // printed, not target
   std::int64_t unavoidable = 0;  // wrong whatever the mask: one mask serves rz slices
 
   VoxelCounts& operator+=(const VoxelCounts& other);

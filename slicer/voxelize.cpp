@@ -192,8 +192,7 @@ class Voxelizer : public Stream<VoxelLayer> {
       return high(mesh_->triangles[static_cast<std::size_t>(i)]) <= first_z;
     });
     for (; waiting_ < by_lowest_.size(); ++waiting_) {
-      const Triangle& triangle =
-          mesh_->triangles[static_cast<std::size_t>(by_lowest_[waiting_])];
+      const Triangle& triangle = mesh_->triangles[static_cast<std::size_t>(by_lowest_[waiting_])];
       if (low(triangle) > last_z) break;
       if (high(triangle) > first_z) active_.push_back(by_lowest_[waiting_]);
     }

@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "slicer/grid.h"
-#include "slicer/mesh.h"
+#include "slicer/mesh/mesh.h"
 #include "slicer/run_layer.h"
 #include "slicer/stream.h"
 

@@ -30,8 +30,8 @@ SpecFault check_word(const WordRule& rule, const EffectSpec& spec) {
   if (std::find(rule.allowed.begin(), rule.allowed.end(), found->second) != rule.allowed.end()) {
     return {};
   }
-  return {rule.name, fmt::format("\"{}\" is not one of: {}", found->second,
-                                 fmt::join(rule.allowed, ", "))};
+  return {rule.name,
+          fmt::format("\"{}\" is not one of: {}", found->second, fmt::join(rule.allowed, ", "))};
 }
 
 SpecFault check_numbers(const NumberRule& rule, const EffectSpec& spec) {
@@ -42,8 +42,8 @@ SpecFault check_numbers(const NumberRule& rule, const EffectSpec& spec) {
   }
   for (const double value : found->second) {
     if (!(value > rule.min && value <= rule.max)) {
-      return {rule.name, fmt::format("{} is not above {} and at most {}", value, rule.min,
-                                     rule.max)};
+      return {rule.name,
+              fmt::format("{} is not above {} and at most {}", value, rule.min, rule.max)};
     }
   }
   return {};

@@ -7,8 +7,7 @@ namespace binderjet {
 namespace {
 
 BoxWeights weights(const EffectSpec& spec, const Grid& grid, int axis) {
-  return box_weights(spec.number("width_mm", static_cast<std::size_t>(axis)) /
-                     grid.voxel_mm(axis));
+  return box_weights(spec.number("width_mm", static_cast<std::size_t>(axis)) / grid.voxel_mm(axis));
 }
 
 }  // namespace

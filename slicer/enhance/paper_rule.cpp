@@ -119,8 +119,10 @@ void apply_rule(const std::array<const Sums*, 3>& printed, const std::array<cons
     const std::uint64_t v = volume[r + 1];
     const std::uint64_t left = v << 1;
     const std::uint64_t right = v >> 1;
-    const std::uint64_t all = left & right & volume[r] & volume[r + 2] & below[r + 1] & above[r + 1];
-    const std::uint64_t any = left | right | volume[r] | volume[r + 2] | below[r + 1] | above[r + 1];
+    const std::uint64_t all =
+        left & right & volume[r] & volume[r + 2] & below[r + 1] & above[r + 1];
+    const std::uint64_t any =
+        left | right | volume[r] | volume[r + 2] | below[r + 1] | above[r + 1];
     toggles[r] = ((v & ~all & more) | (~v & any & less)) & columns;
   }
 }

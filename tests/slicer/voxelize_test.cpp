@@ -18,8 +18,7 @@ using models::joined;
 
 std::vector<RunLayer> all_slices(const Mesh& mesh, const Grid& grid, JobBox job, int block = 3) {
   std::vector<RunLayer> slices;
-  const auto stream =
-      voxelize(std::make_shared<const Mesh>(mesh), grid, job, {0, job.size_px[2]});
+  const auto stream = voxelize(std::make_shared<const Mesh>(mesh), grid, job, {0, job.size_px[2]});
   while (stream->rest().size() > 0) {
     for (const auto& layer : stream->next(block)) {
       slices.insert(slices.end(), layer->slices.begin(), layer->slices.end());
@@ -50,7 +49,8 @@ TEST(Voxelize, FillsABoxWhoseFacesLieOnTheGrid) {
 
 TEST(Voxelize, CountsACentreOnTheLowerFaceAsInsideAndOnTheUpperAsOutside) {
   // Centres are at 0.5, 1.5 ...: a box from 0.5 to 2.5 holds 0.5 and 1.5 but not 2.5.
-  const Mesh mesh = joined(box({0, 0, 0}, {0.25, 0.25, 0.25}), box({0.5, 0.5, 0.5}, {2.5, 2.5, 2.5}));
+  const Mesh mesh =
+      joined(box({0, 0, 0}, {0.25, 0.25, 0.25}), box({0.5, 0.5, 0.5}, {2.5, 2.5, 2.5}));
   const std::vector<RunLayer> slices = all_slices(mesh, kMillimetre);
   ASSERT_EQ(slices.size(), 3U);
   for (int z = 0; z < 3; ++z) {
@@ -64,8 +64,7 @@ TEST(Voxelize, CountsACentreOnTheLowerFaceAsInsideAndOnTheUpperAsOutside) {
 }
 
 TEST(Voxelize, KeepsACavityAndUnitesShellsThatOverlap) {
-  const Mesh hollow =
-      joined(box({0, 0, 0}, {9, 9, 9}), inside_out(box({3, 3, 3}, {6, 6, 6})));
+  const Mesh hollow = joined(box({0, 0, 0}, {9, 9, 9}), inside_out(box({3, 3, 3}, {6, 6, 6})));
   EXPECT_EQ(solid(all_slices(hollow, kMillimetre)), 9 * 9 * 9 - 27);
   const Mesh united = joined(box({0, 0, 0}, {6, 3, 3}), box({3, 0, 0}, {9, 3, 3}));
   EXPECT_EQ(solid(all_slices(united, kMillimetre)), 9 * 3 * 3);
@@ -91,8 +90,7 @@ TEST(Voxelize, GivesTheSameBitsForAnyBlockSizeAndAnyNumberOfThreads) {
   const JobBox job = job_box(bounding_box(mesh), grid, {7, 9}, {3, 2});
   const std::vector<RunLayer> one = all_slices(mesh, grid, job, 1);
   EXPECT_EQ(one, all_slices(mesh, grid, job, 7));
-  const oneapi::tbb::global_control single(
-      oneapi::tbb::global_control::max_allowed_parallelism, 1);
+  const oneapi::tbb::global_control single(oneapi::tbb::global_control::max_allowed_parallelism, 1);
   EXPECT_EQ(one, all_slices(mesh, grid, job, 7));
 }
 

@@ -8,7 +8,7 @@
 #include <string>
 #include <utility>
 
-#include "slicer/mesh.h"
+#include "slicer/mesh/mesh.h"
 
 namespace binderjet::models {
 

@@ -1,0 +1,261 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// PLY, text and binary of either byte order: a header that describes the numbers, then the numbers.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <cmath>
+#include <cstring>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "slicer/error.h"
+#include "slicer/mesh/readers.h"
+
+namespace binderjet {
+namespace {
+
+enum class Type { kInt8, kUint8, kInt16, kUint16, kInt32, kUint32, kFloat, kDouble };
+
+std::optional<Type> type_of(std::string_view word) {
+  constexpr std::array<std::array<std::string_view, 2>, 8> kNames = {{{"char", "int8"},
+                                                                      {"uchar", "uint8"},
+                                                                      {"short", "int16"},
+                                                                      {"ushort", "uint16"},
+                                                                      {"int", "int32"},
+                                                                      {"uint", "uint32"},
+                                                                      {"float", "float32"},
+                                                                      {"double", "float64"}}};
+  for (std::size_t i = 0; i < kNames.size(); ++i) {
+    if (word == kNames[i][0] || word == kNames[i][1]) return static_cast<Type>(i);
+  }
+  return std::nullopt;
+}
+
+std::size_t bytes_of(Type type) {
+  constexpr std::array<std::size_t, 8> kBytes = {1, 1, 2, 2, 4, 4, 4, 8};
+  return kBytes[static_cast<std::size_t>(type)];
+}
+
+struct Property {
+  std::string name;
+  Type type = Type::kFloat;
+  std::optional<Type> length;  // the type of a list's length; none: one number
+};
+
+struct Element {
+  std::string name;
+  std::int64_t count = 0;
+  std::vector<Property> properties;
+};
+
+class PlyReader {
+ public:
+  explicit PlyReader(InputFile& file) : file_(file) {}
+
+  MeshFile read() {
+    read_header();
+    for (const Element& element : elements_) {
+      for (std::int64_t i = 0; i < element.count; ++i) read_item(element, i);
+    }
+    return std::move(result_);
+  }
+
+ private:
+  [[noreturn]] void refuse_header() const {
+    throw Error(ErrorKind::kBadInput, file_.here(),
+                "is no line of a PLY header; export the model again");
+  }
+
+  void read_header() {
+    std::string_view text;
+    bool has_format = false;
+    while (true) {
+      if (!file_.line(text)) {
+        throw Error(ErrorKind::kBadInput, file_.name(), "ends inside its header; export it again");
+      }
+      Words words(text);
+      const std::string_view keyword = words.next();
+      if (keyword == "end_header") break;
+      if (keyword == "format") {
+        const std::string_view format = words.next();
+        is_text_ = format == "ascii";
+        swap_ = format == "binary_big_endian";
+        has_format = is_text_ || swap_ || format == "binary_little_endian";
+      } else if (keyword == "element") {
+        Element element;
+        element.name = words.next();
+        if (!parse_number(words.next(), element.count)) refuse_header();
+        elements_.push_back(std::move(element));
+        element_lines_.push_back(file_.here());
+      } else if (keyword == "property") {
+        take_property(words);
+      } else if (keyword != "ply" && keyword != "comment" && keyword != "obj_info" &&
+                 !keyword.empty()) {
+        refuse_header();
+      }
+    }
+    if (!has_format) throw Error(ErrorKind::kBadInput, file_.name(), "declares no known format");
+    check_header();
+  }
+
+  void take_property(Words& words) {
+    if (elements_.empty()) refuse_header();
+    Property property;
+    std::string_view word = words.next();
+    if (word == "list") {
+      property.length = type_of(words.next());
+      if (!property.length) refuse_header();
+      word = words.next();
+    }
+    const std::optional<Type> type = type_of(word);
+    if (!type) refuse_header();
+    property.type = *type;
+    property.name = words.next();
+    elements_.back().properties.push_back(std::move(property));
+  }
+
+  void check_header() {
+    for (std::size_t i = 0; i < elements_.size(); ++i) {
+      const Element& element = elements_[i];
+      std::int64_t bytes = 0;
+      for (const Property& property : element.properties) {
+        // As text, a digit and what ends it.
+        bytes += is_text_ ? 2
+                          : static_cast<std::int64_t>(
+                                bytes_of(property.length ? *property.length : property.type));
+      }
+      check_claim(file_, element_lines_[i], element.count, std::max<std::int64_t>(bytes, 1),
+                  element.name == "vertex" ? "points" : element.name + " items");
+      if (element.name == "vertex") {
+        result_.mesh.points.reserve(static_cast<std::size_t>(element.count));
+      } else if (element.name == "face") {
+        result_.mesh.triangles.reserve(static_cast<std::size_t>(element.count));
+      }
+    }
+  }
+
+  void read_item(const Element& element, std::int64_t item) {
+    const auto where = [&] {
+      return is_text_ ? file_.here() : fmt::format("{}: {} {}", file_.name(), element.name, item);
+    };
+    Point point{};
+    corners_.clear();
+    for (const Property& property : element.properties) {
+      const bool is_corners =
+          property.name.starts_with("vertex_ind") && element.name == "face" && property.length;
+      std::int64_t count = 1;
+      if (property.length) {
+        count = static_cast<std::int64_t>(value(*property.length, where));
+        if (count < 0 || count > file_.size()) {
+          throw Error(
+              ErrorKind::kBadInput, where(),
+              fmt::format("declares a list of {}; the file is damaged, export it again", count));
+        }
+      }
+      for (std::int64_t i = 0; i < count; ++i) {
+        const double number = value(property.type, where);
+        if (is_corners) {
+          take_corner(number, where);
+        } else if (element.name == "vertex" && property.name.size() == 1) {
+          const int axis = property.name[0] - 'x';
+          if (axis >= 0 && axis < 3) point[static_cast<std::size_t>(axis)] = number;
+        }
+      }
+    }
+    if (element.name == "vertex") {
+      if (!std::isfinite(point[0] + point[1] + point[2])) {
+        throw Error(ErrorKind::kBadInput, where(),
+                    "has a coordinate that is no finite number; export the model again");
+      }
+      result_.mesh.points.push_back(point);
+    }
+    add_polygon(result_.mesh, corners_);
+  }
+
+  template <typename Where>
+  void take_corner(double number, const Where& where) {
+    const bool fits = number >= 0 && number < 2147483647.0 && number == std::floor(number);
+    if (!fits) {
+      throw Error(ErrorKind::kBadInput, where(),
+                  fmt::format("names point {}; export the model again", number));
+    }
+    corners_.push_back(static_cast<int>(number));
+  }
+
+  // Every PLY number, up to 32-bit integers and doubles, is exact in a double.
+  template <typename Where>
+  double value(Type type, const Where& where) {
+    if (is_text_) return text_value();
+    const std::size_t size = bytes_of(type);
+    const std::string_view raw = file_.bytes(size);
+    if (raw.size() < size) {
+      throw Error(ErrorKind::kBadInput, where(), "is cut off here; export the file again");
+    }
+    std::array<char, 8> b{};
+    std::copy(raw.begin(), raw.end(), b.begin());
+    if (swap_) std::reverse(b.begin(), b.begin() + static_cast<std::ptrdiff_t>(size));
+    switch (type) {
+      case Type::kInt8:
+        return decode<std::int8_t>(b);
+      case Type::kUint8:
+        return decode<std::uint8_t>(b);
+      case Type::kInt16:
+        return decode<std::int16_t>(b);
+      case Type::kUint16:
+        return decode<std::uint16_t>(b);
+      case Type::kInt32:
+        return decode<std::int32_t>(b);
+      case Type::kUint32:
+        return decode<std::uint32_t>(b);
+      case Type::kFloat:
+        return static_cast<double>(decode<float>(b));
+      case Type::kDouble:
+        break;
+    }
+    return decode<double>(b);
+  }
+
+  template <typename T>
+  static T decode(const std::array<char, 8>& raw) {
+    T result;
+    std::memcpy(&result, raw.data(), sizeof result);
+    return result;
+  }
+
+  double text_value() {
+    std::string_view word = words_.next();
+    while (word.empty()) {
+      std::string_view text;
+      if (!file_.line(text)) {
+        throw Error(ErrorKind::kBadInput, file_.name(),
+                    "ends before all that its header declares; export it again");
+      }
+      words_ = Words(text);
+      word = words_.next();
+    }
+    double number = 0;
+    if (!parse_number(word, number)) {
+      throw Error(ErrorKind::kBadInput, file_.here(),
+                  fmt::format("\"{}\" is no number; export the model again", word.substr(0, 40)));
+    }
+    return number;
+  }
+
+  InputFile& file_;
+  MeshFile result_;
+  std::vector<Element> elements_;
+  std::vector<std::string> element_lines_;
+  bool is_text_ = false;
+  bool swap_ = false;
+  Words words_{{}};
+  std::vector<int> corners_;
+};
+
+}  // namespace
+
+MeshFile read_ply(InputFile& file) { return PlyReader(file).read(); }
+
+}  // namespace binderjet

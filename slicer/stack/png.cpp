@@ -1,0 +1,131 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "slicer/stack/png.h"
+
+#include <isa-l/crc.h>
+#include <isa-l/igzip_lib.h>
+
+#include <cassert>
+#include <cerrno>
+#include <cmath>
+#include <cstdint>
+#include <cstdio>
+#include <cstring>
+#include <stdexcept>
+
+#include "slicer/error.h"
+#include "slicer/run_layer.h"
+
+namespace binderjet {
+namespace {
+
+using Bytes = std::vector<std::byte>;
+
+void put_u32(Bytes& out, std::uint32_t value) {
+  for (int shift = 24; shift >= 0; shift -= 8)
+    out.push_back(static_cast<std::byte>(value >> shift));
+}
+
+// A chunk is its length, its type, its data and the CRC of the last two.
+void put_chunk(Bytes& out, const char* type, std::span<const std::byte> data) {
+  put_u32(out, static_cast<std::uint32_t>(data.size()));
+  const std::size_t begin = out.size();
+  for (int i = 0; i < 4; ++i) out.push_back(static_cast<std::byte>(type[i]));
+  out.insert(out.end(), data.begin(), data.end());
+  put_u32(out, crc32_gzip_refl(0, reinterpret_cast<const unsigned char*>(out.data() + begin),
+                               out.size() - begin));
+}
+
+// Each row behind a filter byte: Up, so that a row like the one above it is all zeros.
+Bytes filter_up(std::span<const std::byte> bits, std::size_t stride, int height) {
+  constexpr std::byte kUp{2};
+  Bytes rows((stride + 1) * static_cast<std::size_t>(height));
+  const std::byte* above = nullptr;
+  std::byte* out = rows.data();
+  for (int y = 0; y < height; ++y) {
+    const std::byte* row = bits.data() + stride * static_cast<std::size_t>(y);
+    *out++ = kUp;
+    if (above == nullptr) {
+      std::memcpy(out, row, stride);
+    } else {
+      for (std::size_t i = 0; i < stride; ++i) {
+        out[i] = static_cast<std::byte>(std::to_integer<unsigned>(row[i]) -
+                                        std::to_integer<unsigned>(above[i]));
+      }
+    }
+    out += stride;
+    above = row;
+  }
+  return rows;
+}
+
+Bytes zlib_deflate(Bytes& raw) {
+  isal_zstream stream;
+  isal_deflate_stateless_init(&stream);
+  Bytes level_buffer(ISAL_DEF_LVL1_DEFAULT);
+  Bytes out(raw.size() + raw.size() / 8 + 1024);
+  stream.level = 1;
+  stream.level_buf = reinterpret_cast<std::uint8_t*>(level_buffer.data());
+  stream.level_buf_size = static_cast<std::uint32_t>(level_buffer.size());
+  stream.gzip_flag = IGZIP_ZLIB;
+  stream.end_of_stream = 1;
+  stream.next_in = reinterpret_cast<std::uint8_t*>(raw.data());
+  stream.avail_in = static_cast<std::uint32_t>(raw.size());
+  stream.next_out = reinterpret_cast<std::uint8_t*>(out.data());
+  stream.avail_out = static_cast<std::uint32_t>(out.size());
+  if (isal_deflate_stateless(&stream) != COMP_OK) throw std::logic_error("deflate found no room");
+  out.resize(stream.total_out);
+  return out;
+}
+
+}  // namespace
+
+std::vector<std::byte> encode_png_mask(std::span<const std::byte> bits, int width, int height,
+                                       std::array<double, 2> pitch_mm) {
+  const std::size_t stride = packed_row_bytes(width);
+  assert(bits.size() == stride * static_cast<std::size_t>(height));
+
+  Bytes png;
+  for (const unsigned c : {0x89U, 0x50U, 0x4eU, 0x47U, 0x0dU, 0x0aU, 0x1aU, 0x0aU}) {  // .PNG....
+    png.push_back(static_cast<std::byte>(c));
+  }
+  Bytes header;
+  put_u32(header, static_cast<std::uint32_t>(width));
+  put_u32(header, static_cast<std::uint32_t>(height));
+  for (const int c : {1 /* bit depth */, 0 /* grey */, 0, 0, 0}) {
+    header.push_back(static_cast<std::byte>(c));
+  }
+  put_chunk(png, "IHDR", header);
+
+  Bytes resolution;
+  for (const double pitch : pitch_mm) {
+    put_u32(resolution, static_cast<std::uint32_t>(std::lround(1000 / pitch)));
+  }
+  resolution.push_back(std::byte{1});  // pixels per metre
+  put_chunk(png, "pHYs", resolution);
+
+  Bytes rows = filter_up(bits, stride, height);
+  put_chunk(png, "IDAT", zlib_deflate(rows));
+  put_chunk(png, "IEND", {});
+  return png;
+}
+
+void write_file(const std::string& path, std::span<const std::byte> bytes) {
+  std::FILE* file = std::fopen(path.c_str(), "wb");
+  bool good = file != nullptr;
+  if (good) {
+    good = std::fwrite(bytes.data(), 1, bytes.size(), file) == bytes.size();
+    const int write_errno = errno;
+    if (std::fclose(file) != 0) {
+      good = false;
+    } else if (!good) {
+      errno = write_errno;
+    }
+  }
+  if (!good) {
+    const bool no_room = errno == ENOSPC || errno == EDQUOT;
+    throw Error(no_room ? ErrorKind::kNoRoom : ErrorKind::kBadInput, path,
+                std::string("cannot write: ") + std::strerror(errno));
+  }
+}
+
+}  // namespace binderjet

@@ -1,0 +1,125 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Slice stacks in: stack.json checked, images through OpenImageIO.
+#include <OpenImageIO/imageio.h>
+#include <fmt/printf.h>
+
+#include <filesystem>
+#include <fstream>
+#include <nlohmann/json.hpp>
+
+#include "slicer/error.h"
+#include "slicer/stack/slice_stack.h"
+
+namespace binderjet {
+namespace {
+
+// A pattern with exactly one %d or %0Nd and no other %, so that printf can be trusted with it, and
+// no way out of the folder.
+bool good_pattern(const std::string& files) {
+  const std::size_t percent = files.find('%');
+  if (percent == std::string::npos || files.find('/') != std::string::npos) return false;
+  std::size_t i = percent + 1;
+  while (i < files.size() && files[i] >= '0' && files[i] <= '9' && i < percent + 4) ++i;
+  return i < files.size() && files[i] == 'd' && files.find('%', i) == std::string::npos;
+}
+
+StackKind kind_of(const std::string& name, const std::string& where) {
+  for (const StackKind kind : {StackKind::kMask, StackKind::kTarget, StackKind::kPrinted,
+                               StackKind::kMeasured, StackKind::kColor}) {
+    if (word(kind) == name) return kind;
+  }
+  throw Error(ErrorKind::kBadInput, where,
+              "kind \"" + name + "\" is none of mask, target, printed, measured, color");
+}
+
+StackInfo parse(const std::string& path) {
+  std::ifstream file(path);
+  if (!file) throw Error(ErrorKind::kBadInput, path, "is not there; is this a slice stack?");
+  try {
+    const nlohmann::json json = nlohmann::json::parse(file);
+    if (json.at("format") != "slice-stack" || json.at("version") != 1) {
+      throw Error(ErrorKind::kBadInput, path, "is not a slice-stack of version 1");
+    }
+    StackInfo info;
+    info.kind = kind_of(json.at("kind").get<std::string>(), path);
+    json.at("size").get_to(info.size);
+    json.at("pitch_mm").get_to(info.pitch_mm);
+    json.at("origin_mm").get_to(info.origin_mm);
+    json.at("files").get_to(info.files);
+    json.at("first").get_to(info.first);
+    if (json.contains("threshold")) json.at("threshold").get_to(info.threshold);
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      constexpr int kMost = 1 << 20;
+      if (info.size[axis] < 1 || info.size[axis] > kMost) {
+        throw Error(ErrorKind::kBadInput, path, "has a size outside 1 to 2^20");
+      }
+      if (!(info.pitch_mm[axis] > 0 && info.pitch_mm[axis] < 1000)) {
+        throw Error(ErrorKind::kBadInput, path, "has a pitch outside 0 to 1000 mm");
+      }
+    }
+    if (!good_pattern(info.files)) {
+      throw Error(ErrorKind::kBadInput, path,
+                  "\"files\" needs one %d, such as \"mask_%06d.png\", and no folder");
+    }
+    return info;
+  } catch (const nlohmann::json::exception& error) {
+    throw Error(ErrorKind::kBadInput, path, error.what());
+  }
+}
+
+}  // namespace
+
+StackReader::StackReader(const std::string& folder)
+    : folder_(folder), info_(parse(folder + "/stack.json")) {
+  for (int index = 0; index < info_.size[2]; ++index) {
+    std::error_code error;
+    if (!std::filesystem::exists(image_path(index), error)) {
+      throw Error(ErrorKind::kBadInput, image_path(index),
+                  "is missing from the stack; copy the whole folder");
+    }
+  }
+}
+
+std::string StackReader::image_path(int index) const {
+  return folder_ + "/" + fmt::sprintf(info_.files, info_.first + index);
+}
+
+std::vector<std::uint8_t> StackReader::read_grey(int index) const {
+  const std::string path = image_path(index);
+  const auto image = OIIO::ImageInput::open(path);
+  if (!image) throw Error(ErrorKind::kBadInput, path, OIIO::geterror());
+  const OIIO::ImageSpec& spec = image->spec();
+  if (spec.width != info_.size[0] || spec.height != info_.size[1]) {
+    throw Error(ErrorKind::kBadInput, path,
+                fmt::format("is {} x {} pixels, stack.json says {} x {}", spec.width, spec.height,
+                            info_.size[0], info_.size[1]));
+  }
+  std::vector<std::uint8_t> grey(static_cast<std::size_t>(spec.width) *
+                                 static_cast<std::size_t>(spec.height));
+  if (!image->read_image(0, 0, 0, 1, OIIO::TypeDesc::UINT8, grey.data())) {
+    throw Error(ErrorKind::kBadInput, path, image->geterror());
+  }
+  return grey;
+}
+
+RunLayer StackReader::read(int index) const {
+  const std::vector<std::uint8_t> grey = read_grey(index);
+  const auto [width, height, count] = info_.size;
+  RunLayer layer(width);
+  layer.reserve(height, 0);
+  const std::uint8_t* sample = grey.data();
+  for (int y = 0; y < height; ++y) {
+    bool solid = false;
+    for (int x = 0; x < width; ++x, ++sample) {
+      if ((*sample >= info_.threshold) != solid) {
+        solid = !solid;
+        layer.flip(x);
+      }
+    }
+    if (solid) layer.flip(width);
+    layer.end_row();
+  }
+  return layer;
+}
+
+}  // namespace binderjet

@@ -1,0 +1,72 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// A slice stack: a folder with stack.json and one image per layer (DESIGN section 7).
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "slicer/run_layer.h"
+
+namespace binderjet {
+
+enum class StackKind { kMask, kTarget, kPrinted, kMeasured, kColor };
+
+std::string word(StackKind kind);
+
+// Column i of row j of image k is the sample that covers [origin + (i, j, k) pitch, + pitch).
+struct StackInfo {
+  StackKind kind = StackKind::kMask;
+  std::array<int, 3> size{};  // nx, ny, number of images
+  std::array<double, 3> pitch_mm{};
+  std::array<double, 3> origin_mm{};
+  std::string files;    // printf pattern with one %d, e.g. "mask_%06d.png"
+  int first = 0;        // the number of the first image
+  int threshold = 128;  // an 8-bit sample is solid from here on
+};
+
+// Writes a stack under a temporary name beside `folder`; finish() gives it its name. A stack that
+// is not finished vanishes, and what stood at `folder` before stays.
+class StackWriter {
+ public:
+  // `folder` may be new, empty, or an earlier slice stack, which finish() replaces; anything else
+  // there is an Error, for it may be somebody's work.
+  StackWriter(const std::string& folder, StackInfo info);
+  ~StackWriter();
+  StackWriter(const StackWriter&) = delete;
+  StackWriter& operator=(const StackWriter&) = delete;
+
+  // Image `index` (0 is `first`), of the stack's size. Threads may write different images at once.
+  void write(int index, const RunLayer& layer) const;
+  void write_packed(int index, std::span<const std::byte> bits) const;
+  void finish();
+
+  const StackInfo& info() const { return info_; }
+
+ private:
+  std::string folder_;
+  std::string part_;  // the temporary name; empty once finished
+  StackInfo info_;
+};
+
+// Reads a stack that anybody wrote: any image format that OpenImageIO reads, 1-bit or grey.
+class StackReader {
+ public:
+  // Error{kBadInput} if stack.json is not there, not one of ours or names a missing image.
+  explicit StackReader(const std::string& folder);
+
+  const StackInfo& info() const { return info_; }
+  // Image `index`, solid where 1 (1-bit) or >= threshold; threads may read different ones at once.
+  RunLayer read(int index) const;
+  // The same as grey values, row 0 first.
+  std::vector<std::uint8_t> read_grey(int index) const;
+
+ private:
+  std::string image_path(int index) const;
+
+  std::string folder_;
+  StackInfo info_;
+};
+
+}  // namespace binderjet

@@ -1,0 +1,174 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// 3MF and glTF: the transforms on the way to a mesh, units, and what is left out.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cstdint>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "slicer/mesh/boundary.h"
+#include "slicer/mesh/read_mesh.h"
+#include "tests/slicer/mesh/samples.h"
+
+namespace binderjet {
+namespace {
+
+using ::testing::Contains;
+using ::testing::ElementsAre;
+using testing::error_of;
+using ::testing::HasSubstr;
+using testing::TemporaryFile;
+
+std::uint32_t crc32(const std::string& bytes) {
+  std::uint32_t crc = 0xffffffff;
+  for (const char c : bytes) {
+    crc ^= static_cast<unsigned char>(c);
+    for (int i = 0; i < 8; ++i) crc = crc >> 1 ^ ((crc & 1) != 0 ? 0xedb88320u : 0u);
+  }
+  return ~crc;
+}
+
+std::string little(std::uint32_t value, int bytes) {
+  std::string text;
+  for (int i = 0; i < bytes; ++i) text += static_cast<char>(value >> 8 * i);
+  return text;
+}
+
+std::string little(std::size_t value, int bytes) {
+  return little(static_cast<std::uint32_t>(value), bytes);
+}
+
+// A ZIP archive without compression.
+std::string zip(const std::vector<std::pair<std::string, std::string>>& files) {
+  std::string body;
+  std::string directory;
+  for (const auto& [name, content] : files) {
+    const std::string facts = little(20u, 2) + little(0u, 8) + little(crc32(content), 4) +
+                              little(content.size(), 4) + little(content.size(), 4) +
+                              little(name.size(), 2) + little(0u, 2);
+    directory +=
+        "PK\x01\x02" + little(20u, 2) + facts + little(0u, 10) + little(body.size(), 4) + name;
+    body += "PK\x03\x04" + facts + name + content;
+  }
+  const std::size_t start = body.size();
+  return body + directory + "PK\x05\x06" + little(0u, 4) + little(files.size(), 2) +
+         little(files.size(), 2) + little(directory.size(), 4) + little(start, 4) + little(0u, 2);
+}
+
+std::string model_3mf(const std::string& unit, const std::string& resources,
+                      const std::string& build) {
+  const std::string tetrahedron =
+      "<mesh><vertices><vertex x=\"0\" y=\"0\" z=\"0\"/><vertex x=\"1.1\" y=\"0\" z=\"0\"/><vertex "
+      "x=\"0\" y=\"2\" z=\"0\"/><vertex x=\"0\" y=\"0\" z=\"3\"/></vertices><triangles><triangle "
+      "v1=\"0\" v2=\"2\" v3=\"1\"/><triangle v1=\"0\" v2=\"1\" v3=\"3\"/><triangle v1=\"0\" "
+      "v2=\"3\" "
+      "v3=\"2\"/><triangle v1=\"1\" v2=\"2\" v3=\"3\"/></triangles></mesh>";
+  const std::string types =
+      "<?xml version=\"1.0\"?><Types xmlns=\"http://schemas.openxmlformats.org/package/2006/"
+      "content-types\"><Default Extension=\"rels\" ContentType=\"application/"
+      "vnd.openxmlformats-package.relationships+xml\"/><Default Extension=\"model\" "
+      "ContentType=\"application/vnd.ms-package.3dmanufacturing-3dmodel+xml\"/></Types>";
+  const std::string relations =
+      "<?xml version=\"1.0\"?><Relationships "
+      "xmlns=\"http://schemas.openxmlformats.org/package/2006/"
+      "relationships\"><Relationship Target=\"/3D/3dmodel.model\" Id=\"rel0\" "
+      "Type=\"http://schemas.microsoft.com/3dmanufacturing/2013/01/3dmodel\"/></Relationships>";
+  const std::string model =
+      "<?xml version=\"1.0\"?><model unit=\"" + unit +
+      "\" xmlns=\"http://schemas.microsoft.com/3dmanufacturing/core/2015/02\"><resources><object "
+      "id=\"1\" type=\"model\">" +
+      tetrahedron + "</object><object id=\"2\" type=\"support\">" + tetrahedron + "</object>" +
+      resources + "</resources><build>" + build + "</build></model>";
+  return zip(
+      {{"[Content_Types].xml", types}, {"_rels/.rels", relations}, {"3D/3dmodel.model", model}});
+}
+
+MeshFile read(const std::string& name, const std::string& content) {
+  const TemporaryFile file(name, content);
+  return read_mesh(file.path());
+}
+
+TEST(Read3mf, KeepsTheNumbersAndDeclaresTheUnit) {
+  const MeshFile file = read("a.3mf", model_3mf("inch", "", "<item objectid=\"1\"/>"));
+  EXPECT_TRUE(file.unit_declared);
+  EXPECT_EQ(file.unit_mm, 25.4);
+  EXPECT_THAT(file.warnings, ElementsAre(HasSubstr("inch")));
+  EXPECT_EQ(file.mesh.points[1], (Point{1.1, 0, 0}));  // and not float's 1.10000002
+  EXPECT_NEAR(signed_volume(file.mesh), 1.1, 1e-12);
+}
+
+TEST(Read3mf, AppliesTheComponentsTransformBeforeTheItems) {
+  // The component moves by 10 in x, the item then swaps x and y: 10 in y. A swap mirrors, so the
+  // faces turn, or the volume would be negative.
+  const MeshFile file = read(
+      "a.3mf", model_3mf("millimeter",
+                         "<object id=\"3\" type=\"model\"><components><component objectid=\"1\" "
+                         "transform=\"1 0 0 0 1 0 0 0 1 10 0 0\"/></components></object>",
+                         "<item objectid=\"3\" transform=\"0 1 0 1 0 0 0 0 1 0 0 0\"/>"));
+  EXPECT_EQ(file.mesh.points[0], (Point{0, 10, 0}));
+  EXPECT_EQ(file.mesh.points[1], (Point{0, 11.1, 0}));
+  EXPECT_NEAR(signed_volume(file.mesh), 1.1, 1e-12);
+}
+
+TEST(Read3mf, TakesEveryItemOfTheBuildButNoSupports) {
+  const MeshFile file = read(
+      "a.3mf", model_3mf("millimeter", "",
+                         "<item objectid=\"1\"/><item objectid=\"1\" transform=\"1 0 0 0 1 0 0 "
+                         "0 1 5 0 0\"/><item objectid=\"2\"/>"));
+  EXPECT_EQ(file.mesh.triangles.size(), 8u);
+  EXPECT_THAT(file.warnings, ElementsAre(HasSubstr("support")));
+}
+
+TEST(Read3mf, RefusesAnEmptyBuild) {
+  EXPECT_THAT(error_of([] { read("a.3mf", model_3mf("millimeter", "", "")); }),
+              HasSubstr("its build names no model"));
+}
+
+// A GLB with one tetrahedron in a node of its own transform.
+std::string glb(const std::string& node) {
+  std::string data;
+  for (const float value : {0.f, 0.f, 0.f, 1.f, 0.f, 0.f, 0.f, 2.f, 0.f, 0.f, 0.f, 3.f}) {
+    data.append(reinterpret_cast<const char*>(&value), 4);
+  }
+  for (const std::uint32_t index : {0u, 2u, 1u, 0u, 1u, 3u, 0u, 3u, 2u, 1u, 2u, 3u}) {
+    data += little(index, 2);
+  }
+  std::string json =
+      "{\"asset\":{\"version\":\"2.0\"},\"scene\":0,\"scenes\":[{\"nodes\":[0]}],\"nodes\":[{" +
+      node +
+      "\"mesh\":0}],\"meshes\":[{\"primitives\":[{\"attributes\":{\"POSITION\":0},\"indices\":1}]}]"
+      ","
+      "\"buffers\":[{\"byteLength\":72}],\"bufferViews\":[{\"buffer\":0,\"byteLength\":48},{"
+      "\"buffer\":"
+      "0,\"byteOffset\":48,\"byteLength\":24}],\"accessors\":[{\"bufferView\":0,\"componentType\":"
+      "5126,"
+      "\"count\":4,\"type\":\"VEC3\",\"min\":[0,0,0],\"max\":[1,2,3]},{\"bufferView\":1,"
+      "\"componentType\":5123,\"count\":12,\"type\":\"SCALAR\"}]}";
+  json.resize((json.size() + 3) / 4 * 4, ' ');
+  return "glTF" + little(2u, 4) + little(28 + json.size() + data.size(), 4) +
+         little(json.size(), 4) + "JSON" + json + little(data.size(), 4) + std::string("BIN\0", 4) +
+         data;
+}
+
+TEST(ReadGltf, StandsWhereItsNodePutsItAndWarnsOfMetres) {
+  const MeshFile file = read("a.glb", glb("\"translation\":[10,0,0],\"scale\":[2,2,2],"));
+  EXPECT_TRUE(is_closed(file.mesh));
+  EXPECT_NEAR(signed_volume(file.mesh), 8.0, 1e-9);
+  EXPECT_EQ(bounding_box(file.mesh).min[0], 10);
+  EXPECT_FALSE(file.unit_declared);
+  EXPECT_THAT(file.warnings, Contains(HasSubstr("--units m")));
+}
+
+TEST(ReadGltf, TurnsTheFacesOfAMirroringNode) {
+  EXPECT_NEAR(signed_volume(read("a.glb", glb("\"scale\":[-1,1,1],")).mesh), 1.0, 1e-9);
+}
+
+TEST(ReadGltf, RefusesADamagedFile) {
+  EXPECT_THAT(error_of([] { read("a.glb", glb("").substr(0, 200)); }),
+              HasSubstr("a.glb: cannot be"));
+}
+
+}  // namespace
+}  // namespace binderjet
