@@ -109,16 +109,17 @@ void ScoreMap::add(const std::vector<Feature>& features) {
 void ScoreMap::finish(const Score& score) {
   std::sort(features_.begin(), features_.end(), larger);
   if (features_.size() > kMostListed) features_.resize(kMostListed);
-  Json list = Json::array();
-  for (const Feature& feature : features_) list.push_back(to_json(feature, origin_mm_, grid_));
-  const Json json = {{"format", "features"},
-                     {"version", 1},
-                     {"lost", score.lost()},
-                     {"fused", score.fused()},
-                     {"spurious", score.spurious()},
-                     {"listed", features_.size()},
-                     {"features", list}};
-  const std::string text = json.dump(1) + "\n";
+  const Json head = {{"format", "features"},         {"version", 1},
+                     {"lost", score.lost()},         {"fused", score.fused()},
+                     {"spurious", score.spurious()}, {"listed", features_.size()}};
+  // One feature a line, for people and for grep.
+  std::string text = head.dump();
+  text.back() = ',';
+  text += "\n\"features\": [";
+  for (std::size_t i = 0; i < features_.size(); ++i) {
+    text += (i == 0 ? "\n" : ",\n") + to_json(features_[i], origin_mm_, grid_).dump();
+  }
+  text += "\n]}\n";
   stack_.write_file("features.json", std::as_bytes(std::span(text)));
   stack_.finish();
 }

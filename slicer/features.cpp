@@ -96,9 +96,25 @@ void wear_along_row(Row open, Row material, int by, Flips& out) {
   }
 }
 
-// One step of wear: from what is printed or worn into what is neither, `by` voxels (in y: 0 or 1).
-RunLayer wear(const Material& material, const RunLayer& slice, const RunLayer& open,
-              std::array<int, 2> by) {
+// One step of wear along rows: what is printed or worn takes `by` voxels on each side.
+RunLayer wear_along_rows(const Material& material, const RunLayer& slice, const RunLayer& open,
+                         int by) {
+  RunLayer out(open.width());
+  out.reserve(open.height(), open.flip_count());
+  Flips row;
+  Flips scratch;
+  for (int y = 0; y < open.height(); ++y) {
+    row.clear();
+    if (!open.row(y).empty()) {
+      wear_along_row(open.row(y), material.row(&slice, y, scratch), by, row);
+    }
+    out.append_row(row);
+  }
+  return out;
+}
+
+// One step of wear across rows, from each row into those beside it.
+RunLayer wear_across_rows(const Material& material, const RunLayer& slice, const RunLayer& open) {
   RunLayer out(open.width());
   out.reserve(open.height(), open.flip_count());
   Flips row;
@@ -106,12 +122,8 @@ RunLayer wear(const Material& material, const RunLayer& slice, const RunLayer& o
   Flips left;
   Flips scratch;
   for (int y = 0; y < open.height(); ++y) {
-    if (open.row(y).empty()) {
-      out.end_row();
-      continue;
-    }
-    wear_along_row(open.row(y), material.row(&slice, y, scratch), by[0], row);
-    for (int other = y - by[1]; other <= y + by[1]; other += 2) {
+    row.assign(open.row(y).begin(), open.row(y).end());
+    for (int other = y - 1; other <= y + 1 && !row.empty(); other += 2) {
       rows::subtract(material.row(&slice, other, scratch), open.row(other), worn);
       rows::subtract(row, worn, left);
       row.swap(left);
@@ -125,17 +137,18 @@ std::vector<RunLayer> vanished(const Material& material, const ComparedLayer* be
                                const ComparedLayer& layer, const ComparedLayer* above,
                                const Grid& grid) {
   std::vector<RunLayer> open = unprinted(material, below, layer, above);
-  // Whole voxels, spread evenly over the steps, so that the way there is as straight as can be.
+  // Whole voxels, spread evenly over the steps, so that a path may run aslant.
   const std::array<int, 2> reach{static_cast<int>(kWornMm / grid.voxel_mm(0)),
                                  static_cast<int>(kWornMm / grid.voxel_mm(1))};
   const int steps = std::max(reach[0], reach[1]);
   for (std::size_t s = 0; s < open.size(); ++s) {
+    const RunLayer& slice = layer.target->slices[s];
+    const auto takes = [&](int step, std::size_t axis) {
+      return (step + 1) * reach[axis] / steps - step * reach[axis] / steps;
+    };
     for (int step = 0; step < steps && !open[s].empty(); ++step) {
-      std::array<int, 2> by{};
-      for (std::size_t a = 0; a < 2; ++a) {
-        by[a] = (step + 1) * reach[a] / steps - step * reach[a] / steps;
-      }
-      open[s] = wear(material, layer.target->slices[s], open[s], by);
+      open[s] = wear_along_rows(material, slice, open[s], takes(step, 0));
+      if (takes(step, 1) > 0) open[s] = wear_across_rows(material, slice, open[s]);
     }
   }
   return open;

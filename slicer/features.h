@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // What a print loses, fuses and adds: whole features, not skins that are a little thin or thick.
 //
-// Lost: a target voxel is worn where it is not printed but a path within the target, of at most
-// one layer up or down and then kWornMm along x and along y, leads to a voxel that is printed. A
+// Lost: a target voxel is worn where it is not printed but a path within the target leads to a
+// voxel that is printed: at most one layer up or down, and at most kWornMm along x and along y. A
 // target voxel that is neither printed nor worn is lost; `lost` counts the connected regions (by
 // faces, in 3-D) of lost voxels. A pin of which nothing is left is one, a wall that came out
 // thinner is none, a spike that broke off is one if more than kWornMm of it is gone.
@@ -12,8 +12,8 @@
 //
 // Spurious: connected printed regions that hold no target voxel.
 //
-// kWornMm does not depend on the model, so figures of two models or prints can be compared. A box as
-// wide as the paper's (0.7 mm) moves no straight edge by more at levels from 0.15 to 0.85.
+// kWornMm does not depend on the model, so figures of two models or prints can be compared. A box
+// as wide as the paper's (0.7 mm) moves no straight edge by more at levels from 0.15 to 0.85.
 #pragma once
 
 #include <vector>
