@@ -45,8 +45,7 @@ class PaperGargoyle : public testing::Test {
     mesh_ = std::make_shared<const Mesh>(load_part(*file, std::nullopt, placement).mesh);
   }
 
-  Print printed(const PrinterModel& model, int passes) const {
-    const JobBox box = job_box(bounding_box(*mesh_), grid_, {0, 0}, model.reach().xy_vx);
+  Print printed(const PrinterModel& model, int passes, const JobBox& box) const {
     const auto shared = std::make_shared<const PrinterModel>(model);
     const auto masks = paper_masks(mesh_, grid_, box, {0, box.size_px[2]}, shared, passes);
     Print out;
@@ -86,11 +85,12 @@ class PaperGargoyle : public testing::Test {
     const PrinterModel ideal({{"threshold", {}, {{"level", {0.5}}}}}, grid_);
     std::cout << name << '\n';
     tell_head();
-    const Print perfect = printed(ideal, 0);
+    const JobBox box = job_box(bounding_box(*mesh_), grid_, {0, 0}, model.reach().xy_vx);
+    const Print perfect = printed(ideal, 0, box);
     tell("ideal", score(perfect));
     draw_reliefs(perfect.layers, grid_, name, "a_ideal");
     for (std::size_t passes = 0; passes < known_wrong.size(); ++passes) {
-      const Print print = printed(model, static_cast<int>(passes));
+      const Print print = printed(model, static_cast<int>(passes), box);
       const Score sum = score(print);
       tell(passes == 0 ? "plain" : fmt::format("enhanced, {} passes", passes), sum);
       // Known to four digits from an independent implementation.

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A printed volume seen straight from a side, shaded like a statue under a lamp.
+// A printed volume seen straight from below, shaded like a statue under a lamp: the gargoyle's
+// face, for in its file it lies on it.
 #pragma once
 
 #include <algorithm>
@@ -14,22 +15,23 @@
 
 namespace binderjet {
 
-// Depths in mm of what is seen looking along +y from the front, on square pixels.
+// What is seen looking up from below the bed, y upwards: how high the lowest voxel is, in mm, on
+// square pixels.
 class Relief {
  public:
   Relief(const std::vector<Shared<RunLayer>>& layers, const Grid& grid)
       : pixel_mm_(grid.voxel_mm(0)),
         width_(layers.front()->width()),
-        height_(
-            static_cast<int>(static_cast<double>(layers.size()) * grid.pitch_mm[2] / pixel_mm_)),
+        height_(static_cast<int>(layers.front()->height() * grid.voxel_mm(1) / pixel_mm_)),
         depth_(static_cast<std::size_t>(width_) * static_cast<std::size_t>(height_), kNothing) {
-    for (int z = 0; z < height_; ++z) {
-      const auto layer =
-          std::min(layers.size() - 1, static_cast<std::size_t>(z * pixel_mm_ / grid.pitch_mm[2]));
-      for (int y = layers[layer]->height() - 1; y >= 0; --y) {
-        const auto row = layers[layer]->row(y);
+    for (std::size_t k = layers.size(); k-- > 0;) {
+      for (int v = 0; v < height_; ++v) {
+        const auto row = layers[k]->row(static_cast<int>(v * pixel_mm_ / grid.voxel_mm(1)));
         for (std::size_t i = 0; i < row.size(); i += 2) {
-          for (int x = row[i]; x < row[i + 1]; ++x) at(x, z) = y * grid.voxel_mm(1);
+          // From below, x runs the other way.
+          for (int x = row[i]; x < row[i + 1]; ++x) {
+            depth_[place(width_ - 1 - x, v)] = static_cast<double>(k) * grid.pitch_mm[2];
+          }
         }
       }
     }
@@ -55,20 +57,19 @@ class Relief {
     const double sx = slope(1, 0);
     const double sz = slope(0, 1);
     // A lamp above on the left.
-    const double light = (-0.4 * -sx + 0.6 * sz + 0.7) / std::sqrt(sx * sx + sz * sz + 1);
+    const double light = (-0.4 * sx + 0.6 * sz + 0.7) / std::sqrt(sx * sx + sz * sz + 1);
     return std::clamp(static_cast<int>(std::lround(light * 14)), 0, 14);
   }
 
  private:
   static constexpr double kNothing = 1e9;
-  double& at(int x, int z) {
-    return depth_[static_cast<std::size_t>(z) * static_cast<std::size_t>(width_) +
-                  static_cast<std::size_t>(x)];
+  std::size_t place(int x, int v) const {
+    return static_cast<std::size_t>(v) * static_cast<std::size_t>(width_) +
+           static_cast<std::size_t>(x);
   }
   double value(int x, int z) const {
     if (x < 0 || z < 0 || x >= width_ || z >= height_) return kNothing;
-    return depth_[static_cast<std::size_t>(z) * static_cast<std::size_t>(width_) +
-                  static_cast<std::size_t>(x)];
+    return depth_[place(x, z)];
   }
 
   double pixel_mm_;
@@ -92,8 +93,12 @@ inline void draw_reliefs(const std::vector<Shared<RunLayer>>& layers, const Grid
     double x_mm, z_mm, width_mm, height_mm;
     int scale;
   };
+  // Places in the box of a job whose margin is that of the paper's kernel.
   const CloseUp views[] = {
-      {"whole", 0, 0, relief.width() * relief.pixel_mm(), relief.height() * relief.pixel_mm(), 2}};
+      {"whole", 0, 0, relief.width() * relief.pixel_mm(), relief.height() * relief.pixel_mm(), 2},
+      {"wing", 1.9, 14, 3.6, 5.6, 6},
+      {"ear", 5.2, 12.6, 5, 3.2, 6},
+      {"mouth", 5, 7.6, 4.4, 3.4, 6}};
   for (const CloseUp& view : views) {
     const int x0 = static_cast<int>(view.x_mm / relief.pixel_mm());
     const int z0 = static_cast<int>(view.z_mm / relief.pixel_mm());
