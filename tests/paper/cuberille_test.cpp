@@ -13,6 +13,7 @@
 
 #include "driver/mask_source.h"
 #include "tests/support/models.h"
+#include "tests/transport/sample_job.h"
 
 extern char** environ;
 
@@ -69,9 +70,8 @@ std::vector<RunLayer> trimmed(const std::string& path) {
 }
 
 TEST(PaperCuberille, GivesTheSameMasksAndCostsMore) {
-  const std::filesystem::path folder = std::filesystem::path(testing::TempDir()) / "cuberille_test";
-  std::filesystem::create_directories(folder);
-  const auto file = [&](const char* name) { return (folder / name).string(); };
+  const TempFolder folder;
+  const auto file = [&](const char* name) { return folder / name; };
   models::write_obj(models::golf_ball(8), file("ball.obj"));
 
   const Cost direct = run({"slice", file("ball.obj"), "-p", "z450", "-o", file("direct.bjob"),
@@ -96,7 +96,6 @@ TEST(PaperCuberille, GivesTheSameMasksAndCostsMore) {
   EXPECT_EQ(trimmed(file("again.bjob")), sent);
   EXPECT_GT(detour.seconds, direct.seconds);
   EXPECT_GT(detour.peak_mb, direct.peak_mb);
-  std::filesystem::remove_all(folder);
 }
 
 }  // namespace

@@ -1,0 +1,103 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// score and simulate, as the command line runs them.
+#include <gtest/gtest.h>
+
+#include <CLI/CLI.hpp>
+#include <filesystem>
+#include <fstream>
+#include <nlohmann/json.hpp>
+
+#include "driver/verbs.h"
+#include "slicer/error.h"
+#include "slicer/stack/slice_stack.h"
+#include "tests/support/models.h"
+#include "tests/transport/sample_job.h"
+
+namespace binderjet {
+namespace {
+
+namespace fs = std::filesystem;
+
+class ScoreVerb : public testing::Test {
+ protected:
+  ScoreVerb() {
+    // A slab, and a pin on it that is far thinner than the paper's kernel.
+    models::write_obj(models::joined(models::box({0, 0, 0}, {6, 6, 1}),
+                                     models::box({2.9, 2.95, 0.5}, {3.1, 3.05, 3})),
+                      file("pin.obj"));
+    run({"slice", file("pin.obj"), "-p", "z450", "-o", file("pin.bjob")});
+  }
+  std::string file(const std::string& name) const { return folder_ / name; }
+  static nlohmann::json run(std::vector<std::string> words) {
+    CLI::App program;
+    add_slice_verb(program);
+    add_score_verb(program);
+    add_simulate_verb(program);
+    words.emplace_back("--json");
+    words.emplace_back("-q");
+    std::reverse(words.begin(), words.end());  // as CLI11 wants them
+    testing::internal::CaptureStdout();
+    try {
+      program.parse(words);
+    } catch (...) {
+      testing::internal::GetCapturedStdout();
+      throw;
+    }
+    return nlohmann::json::parse(testing::internal::GetCapturedStdout());
+  }
+
+  TempFolder folder_;
+};
+
+TEST_F(ScoreVerb, TellsOfThePinThatVanishes) {
+  const auto score = run({"score", file("pin.bjob"), "--target", file("pin.obj")});
+  for (const char* key : {"solid_voxels", "wrong", "floor", "excess", "epe_mm"}) {
+    EXPECT_TRUE(score.contains(key)) << key;
+  }
+  for (const char* key : {"mean", "p95", "max"}) EXPECT_TRUE(score["epe_mm"].contains(key)) << key;
+  EXPECT_EQ(score["lost"], 1);
+  EXPECT_EQ(score["fused"], 0);
+  EXPECT_EQ(score["spurious"], 0);
+}
+
+TEST_F(ScoreVerb, ListsItWithItsPlaceAndDrawsIt) {
+  run({"score", file("pin.bjob"), "--target", file("pin.obj"), "--map", file("map")});
+  std::ifstream text(file("map/features.json"));
+  const auto list = nlohmann::json::parse(text);
+  EXPECT_EQ(list["lost"], 1);
+  const auto pin = list["features"].at(0);
+  EXPECT_EQ(pin["kind"], "lost");
+  // The part stands in the middle of a bed of 203 x 254 mm, snapped to a pixel.
+  EXPECT_NEAR(pin["at_mm"][0].get<double>(), 101.5, 0.1);
+  EXPECT_NEAR(pin["at_mm"][1].get<double>(), 127, 0.1);
+  // The slab is 10 layers high, the eleventh is worn with it.
+  EXPECT_EQ(pin["layers"][0], 11);
+  EXPECT_EQ(pin["layers"][1], 30);
+  EXPECT_NEAR(pin["size_mm"][0].get<double>(), 0.2, 0.05);
+  EXPECT_NEAR(pin["size_mm"][1].get<double>(), 0.1, 0.03);
+
+  const StackReader map(file("map"));
+  EXPECT_EQ(map.info().kind, StackKind::kColor);
+  EXPECT_EQ(map.info().size[2], 30);
+}
+
+TEST_F(ScoreVerb, ScoresAPieceOfAJob) {
+  run({"slice", file("pin.obj"), "-p", "z450", "-o", file("piece.bjob"), "--layers", "15:25"});
+  const auto score =
+      run({"score", file("piece.bjob"), "--target", file("pin.obj"), "--map", file("piece_map")});
+  EXPECT_EQ(score["lost"], 1);
+  std::ifstream text(file("piece_map/features.json"));
+  EXPECT_EQ(nlohmann::json::parse(text)["features"].at(0)["layers"],
+            nlohmann::json::parse("[15, 25]"));
+}
+
+TEST_F(ScoreVerb, WritesNoMapOverSomebodysWork) {
+  fs::create_directories(file("mine"));
+  std::ofstream(file("mine/letter.txt")) << "dear";
+  EXPECT_THROW(run({"score", file("pin.bjob"), "--target", file("pin.obj"), "--map", file("mine")}),
+               Error);
+  EXPECT_TRUE(fs::exists(file("mine/letter.txt")));
+}
+
+}  // namespace
+}  // namespace binderjet
