@@ -81,6 +81,18 @@ TEST(Features, CountALonePrintedCrumbAsOneSpurious) {
   EXPECT_EQ(result.features.front().region.voxels, 2 * 2) << "two layers of two slices";
 }
 
+TEST(Features, CountAsSpuriousOnlyWhatHoldsNoTargetInAnySlice) {
+  // The target fills only the upper slice of its first layer.
+  Volume target(20, 6, 4);
+  target.fill([](int x, int, int z) { return x >= 3 && x < 9 && z == 1; });
+  expect_counts(
+      score(target,
+            printed_of(20, 6, 2, [](int x, int, int k) { return k == 0 && x >= 3 && x < 9; }),
+            kGrid)
+          .score,
+      0, 0, 0);
+}
+
 TEST(Features, CountAThinnedWallAndAThickenedOneAsNone) {
   const auto wall = [](int from, int to) {
     return [=](int x, int, int) { return x >= from && x < to; };
@@ -123,6 +135,65 @@ TEST(Features, CountWhatIsDiagonallyApartTwice) {
     return (k < 2 && x < 5 && y < 5) || (k < 2 && x >= 5 && y >= 5 && x < 9 && y < 9);
   });
   expect_counts(score(target, Volume(20, 20, 3), kGrid).score, 2, 0, 0);
+}
+
+// The definition voxel by voxel on a whole volume: what is neither printed nor worn.
+Volume lost_voxels(const Volume& target, const Volume& printed, const Grid& grid) {
+  const int rz = grid.detail_vx[2];
+  const auto is_printed = [&](int x, int y, int z) {
+    return z >= 0 && target.at(x, y, z) == 1 && printed.at(x, y, z / rz) == 1;
+  };
+  Volume kept = target;
+  kept.fill([&](int x, int y, int z) {
+    if (target.at(x, y, z) == 0) return false;
+    bool found = is_printed(x, y, z);
+    for (const int way : {-1, 1}) {
+      int other = z;  // along the target into the layer below or above
+      while (other >= 0 && other / rz == z / rz && target.at(x, y, other) == 1) other += way;
+      if (other / rz != z / rz || other < 0) found = found || is_printed(x, y, other);
+    }
+    return found;
+  });
+  const auto spread = [&](int dx, int dy) {
+    const Volume before = kept;
+    kept.fill([&](int x, int y, int z) {
+      return target.at(x, y, z) == 1 &&
+             (before.at(x, y, z) == 1 ||
+              before.at(x - dx, y - dy, z) + before.at(x + dx, y + dy, z) > 0);
+    });
+  };
+  // Voxels of 0.1 mm: two steps, each along x and then along y.
+  for (int step = 0; step < 2; ++step) {
+    spread(1, 0);
+    spread(0, 1);
+  }
+  Volume lost = target;
+  lost.fill([&](int x, int y, int z) { return target.at(x, y, z) == 1 && kept.at(x, y, z) == 0; });
+  return lost;
+}
+
+TEST(Features, LoseTheVoxelsThatTheDefinitionSays) {
+  Random random;
+  std::int64_t found = 0;
+  for (int round = 0; round < 200; ++round) {
+    SCOPED_TRACE(round);
+    const Grid grid{{0.1, 0.1, 0.1}, {1, 1, random.number(1, 3)}};
+    const int rz = grid.detail_vx[2];
+    const int layers = random.number(1, 5);
+    const Volume target = random.volume(random.number(1, 24), random.number(1, 24), layers * rz);
+    const Volume printed = random.volume(target.nx, target.ny, layers);
+    const auto stream = score_layers(whole::voxel_stream(target, rz, {0, layers}),
+                                     whole::layer_stream(printed), grid, {0, layers});
+    std::vector<Shared<RunLayer>> slices;
+    for (const auto& layer : stream->next(layers)) {
+      for (const RunLayer& slice : layer->features.lost) {
+        slices.push_back(std::make_shared<const RunLayer>(slice));
+        found += slice.count();
+      }
+    }
+    ASSERT_EQ(whole::stacked(slices), lost_voxels(target, printed, grid));
+  }
+  EXPECT_GT(found, 0);
 }
 
 // Fused in powder is lost in solid: inside a thick block, the complements change places.
