@@ -13,11 +13,11 @@
 namespace binderjet {
 namespace {
 
-// The rule runs on tiles, one 64-bit word a row: 62 columns and one on each side, 64 rows and one
+// The rule runs on tiles, one 64-bit word a row: 62 columns and one on each side, 32 rows and one
 // above and below. Only tiles that hold boundary voxels of V are drawn, so the cost is the
 // boundary's.
 constexpr int kColumns = 62;
-constexpr int kRows = 64;
+constexpr int kRows = 32;
 constexpr int kDrawnRows = kRows + 2;
 using Words = std::array<std::uint64_t, kDrawnRows>;
 
