@@ -10,8 +10,8 @@ std::unique_ptr<Stream<RunLayer>> printed_stream(const MaskSource& masks,
   using Print = Step<RunLayer, RunLayer>;
   const LayerRange layers = masks.layers();
   return std::make_unique<Print>(
-      masks.stream(), layers, 0, layers.last,
-      [&model](int, Print::Window window) { return model.print(*window[0]); });
+      masks.stream(), layers, model.window_reach(), layers,
+      [&model](int, Print::Window window) { return model.print(window); });
 }
 
 void write_printed(const MaskSource& masks, const PrinterModel& model, const Grid& grid,

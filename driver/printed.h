@@ -11,7 +11,8 @@
 
 namespace binderjet {
 
-// The printed voxels of each mask. Source and model must outlive the stream.
+// The printed voxels of each mask; layers that the source lacks are powder. Source and model must
+// outlive the stream.
 std::unique_ptr<Stream<RunLayer>> printed_stream(const MaskSource& masks,
                                                  const PrinterModel& model);
 

@@ -2,6 +2,7 @@
 // From a placed mesh to the masks that are sent, as one stream.
 #pragma once
 
+#include <functional>
 #include <memory>
 
 #include "slicer/effects/model.h"
@@ -18,16 +19,28 @@ struct MaskLayer {
   Shared<VoxelLayer> target;  // what it is meant to become
 };
 
-// The masks of `layers` as the target is: no enhancement. The part's lower corner is at (0, 0, 0).
-std::unique_ptr<Stream<MaskLayer>> plain_masks(std::shared_ptr<const Mesh> mesh, const Grid& grid,
-                                               const JobBox& box, LayerRange layers);
+// The masks of `layers` as the target is: no enhancement.
+std::unique_ptr<Stream<MaskLayer>> plain_masks(std::unique_ptr<Stream<VoxelLayer>> target,
+                                               const Grid& grid, LayerRange layers, int job_layers);
+
+// The target's layers from a range that a stream of masks asks for, once.
+using TargetFrom = std::function<std::unique_ptr<Stream<VoxelLayer>>(LayerRange)>;
 
 // The masks after `passes` passes of the paper's rule (slicer/enhance/paper_rule.h).
 //
 // The paper (4.5) holds 2 + rz voxel layers per pass: one done, the current one, and those of the
 // next printed layer. Here a pass computes whole printed layers and needs the layer below and the
 // one above, so it holds 3 rz voxel layers, and kBlockLayers - 1 more printed layers to keep the
-// cores busy; as runs these are smaller than the paper's four layers of voxels.
+// cores busy; as runs these are smaller than the paper's four layers of voxels. A model whose
+// binder crosses layers adds its window_reach() of masks on each side.
+std::unique_ptr<Stream<MaskLayer>> paper_masks(TargetFrom target_from, const Grid& grid,
+                                               LayerRange layers, int job_layers,
+                                               std::shared_ptr<const PrinterModel> model,
+                                               int passes);
+
+// The same from a mesh whose lower corner is at (0, 0, 0).
+std::unique_ptr<Stream<MaskLayer>> plain_masks(std::shared_ptr<const Mesh> mesh, const Grid& grid,
+                                               const JobBox& box, LayerRange layers);
 std::unique_ptr<Stream<MaskLayer>> paper_masks(std::shared_ptr<const Mesh> mesh, const Grid& grid,
                                                const JobBox& box, LayerRange layers,
                                                std::shared_ptr<const PrinterModel> model,

@@ -44,33 +44,37 @@ class Stream {
 // Enough layers in flight to keep the cores busy, few enough to keep memory small.
 constexpr int kBlockLayers = 8;
 
-// Out(k) = make(k, window), window = In(k - reach) ... In(k + reach); null beyond the job's ends.
+// Out(k) = make(k, window), window = In(k - reach) ... In(k + reach); null beyond the job's ends
+// or, where only a piece of the job is there, beyond that piece.
 template <class In, class Out>
 class Step : public Stream<Out> {
  public:
   using Window = std::span<const Shared<In>>;
   using Make = std::function<Out(int layer, Window)>;
 
-  // The upstream must begin `reach` layers before `layers` and end as much after, or at the job's
-  // ends (layer 0 and `job_layers`).
-  Step(std::unique_ptr<Stream<In>> upstream, LayerRange layers, int reach, int job_layers,
+  // The upstream must begin `reach` layers before `layers` and end as much after, or where `job`
+  // begins and ends.
+  Step(std::unique_ptr<Stream<In>> upstream, LayerRange layers, int reach, LayerRange job,
        Make make)
       : upstream_(std::move(upstream)),
         rest_(layers),
         reach_(reach),
-        job_layers_(job_layers),
+        job_(job),
         held_first_(upstream_->rest().first),
         make_(std::move(make)) {
-    assert(held_first_ <= std::max(0, layers.first - reach));
-    assert(upstream_->rest().last >= std::min(job_layers, layers.last + reach));
+    assert(held_first_ <= std::max(job.first, layers.first - reach));
+    assert(upstream_->rest().last >= std::min(job.last, layers.last + reach));
   }
+  Step(std::unique_ptr<Stream<In>> upstream, LayerRange layers, int reach, int job_layers,
+       Make make)
+      : Step(std::move(upstream), layers, reach, LayerRange{0, job_layers}, std::move(make)) {}
 
   LayerRange rest() const override { return rest_; }
 
   std::vector<Shared<Out>> next(int count) override {
     const int first = rest_.first;
     const int last = std::min(rest_.last, first + count);
-    pull_until(std::min(job_layers_, last + reach_));
+    pull_until(std::min(job_.last, last + reach_));
     std::vector<Shared<Out>> out(static_cast<std::size_t>(last - first));
     oneapi::tbb::parallel_for(first, last, [&](int layer) {
       std::vector<Shared<In>> window;
@@ -93,14 +97,14 @@ class Step : public Stream<Out> {
     for (Shared<In>& layer : upstream_->next(last - have)) held_.push_back(std::move(layer));
   }
   Shared<In> held(int layer) const {
-    if (layer < 0 || layer >= job_layers_) return nullptr;
+    if (layer < job_.first || layer >= job_.last) return nullptr;
     return held_[static_cast<std::size_t>(layer - held_first_)];
   }
 
   std::unique_ptr<Stream<In>> upstream_;
   LayerRange rest_;
   int reach_;
-  int job_layers_;
+  LayerRange job_;
   int held_first_;
   std::deque<Shared<In>> held_;
   Make make_;

@@ -5,7 +5,9 @@
 
 #include <algorithm>
 
+#include "slicer/effects/fill.h"
 #include "slicer/effects/spread.h"
+#include "slicer/effects/survive.h"
 #include "slicer/effects/threshold.h"
 
 namespace binderjet {
@@ -52,7 +54,8 @@ SpecFault check_numbers(const NumberRule& rule, const EffectSpec& spec) {
 }  // namespace
 
 const std::vector<EffectKind>& effect_kinds() {
-  static const std::vector<EffectKind> kinds = {spread_kind(), threshold_kind()};
+  static const std::vector<EffectKind> kinds = {spread_kind(), threshold_kind(), fill_kind(),
+                                                survive_kind()};
   return kinds;
 }
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// An effect of the printer model as data: its kind, its parameters, how far it reaches.
+// An effect of the printer model as data: its kind, its parameters, its forward form.
 //
 // Adding an effect touches: one file here with its EffectKind, one line in effect.cpp's list, its
 // tests. Profiles, simulate, enhance and calibrate find it through that list.
@@ -25,7 +25,7 @@ struct EffectSpec {
   }
 };
 
-// How far an effect reaches from a voxel: voxels in x and y, layers in z.
+// How far from a voxel masks still matter for it: voxels in x and y, layers in z.
 struct Reach {
   std::array<int, 2> xy_vx{};
   int layers_below = 0;
@@ -49,8 +49,8 @@ struct EffectKind {
   std::string kind;
   std::vector<WordRule> words;
   std::vector<NumberRule> numbers;
-  Reach (*reach)(const EffectSpec&, const Grid&);
-  // The forward form: writes the effect into the model. Error{kBadInput} if it does not fit there.
+  // The forward form: writes the effect into the model, which knows from there how far it reaches.
+  // Error{kBadInput} if it does not fit there.
   void (*add)(const EffectSpec&, const Grid&, ModelForm&);
 };
 

@@ -2,39 +2,67 @@
 // The printer model: the ordered effects of a profile as one function from masks to printed voxels.
 #pragma once
 
+#include <array>
 #include <cstdint>
+#include <optional>
+#include <span>
 #include <vector>
 
-#include "slicer/box_filter.h"
+#include "slicer/dose_filter.h"
 #include "slicer/effects/effect.h"
 #include "slicer/grid.h"
 #include "slicer/run_layer.h"
+#include "slicer/stream.h"
 
 namespace binderjet {
 
-// What the effects of a model add up to. Each effect's forward form writes its share into it.
+// What the effects of a model add up to. Each effect's forward form writes its share into it, so
+// simulate, enhance and calibrate know this form and no effect by name.
 struct ModelForm {
-  BoxWeights spread_x;  // dose = mask repeated to the voxel grid, filtered with this box
-  BoxWeights spread_y;
+  // The dose is the sum of these. Before any effect a pixel's binder stays in its pixel.
+  std::vector<DoseTerm> terms{DoseTerm{}};
   double level = 0;  // a voxel is bound iff its dose is at least this; 0: no effect has said so
   // Bound powder that holds no such box (voxels in x and y) is brushed off.
   std::vector<std::array<int, 2>> survive_vx;
+
+  // Declares the level; Error{kBadInput} if another effect already has.
+  void bind_at(double new_level);
+  Reach reach() const;
 };
 
 class PrinterModel {
  public:
   // Error{kBadInput} if the effects are no whole model (nothing binds, or binds twice).
   PrinterModel(const std::vector<EffectSpec>& effects, const Grid& grid);
+  PrinterModel(ModelForm form, const Grid& grid);
 
+  const ModelForm& form() const { return form_; }
   const Reach& reach() const { return reach_; }
+  // How many layers on each side of a mask print() wants to see.
+  int window_reach() const { return std::max(reach_.layers_below, reach_.layers_above); }
+
   // The printed voxels of a layer, at the voxel grid in x and y; all its rz slices are equal.
+  // `window` holds the masks of window_reach() layers below it, its own, and as many above; null
+  // is powder.
+  RunLayer print(std::span<const RunLayer* const> window) const;
+  RunLayer print(std::span<const Shared<RunLayer>> window) const;
+  // The same for a layer between layers of powder.
   RunLayer print(const RunLayer& mask) const;
 
  private:
+  // Most models are one box (the paper's is), which has a faster way.
+  struct OneBox {
+    BoxWeights x;
+    BoxWeights y;
+    std::int64_t least;
+  };
+  void choose_filter();
+
   std::array<int, 2> repeat_;
-  Reach reach_;
   ModelForm form_;
-  std::int64_t least_;
+  Reach reach_;
+  std::optional<OneBox> box_;
+  std::optional<DoseFilter> filter_;
 };
 
 }  // namespace binderjet

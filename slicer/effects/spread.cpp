@@ -6,8 +6,11 @@
 namespace binderjet {
 namespace {
 
-BoxWeights weights(const EffectSpec& spec, const Grid& grid, int axis) {
-  return box_weights(spec.number("width_mm", static_cast<std::size_t>(axis)) / grid.voxel_mm(axis));
+Kernel kernel(const EffectSpec& spec, const Grid& grid, int axis) {
+  const double width_vx =
+      spec.number("width_mm", static_cast<std::size_t>(axis)) / grid.voxel_mm(axis);
+  return spec.words.at("shape") == "box" ? box_kernel(box_weights(width_vx))
+                                         : gaussian_kernel(width_vx);
 }
 
 }  // namespace
@@ -15,14 +18,13 @@ BoxWeights weights(const EffectSpec& spec, const Grid& grid, int axis) {
 EffectKind spread_kind() {
   constexpr double kMaxWidthMm = 10;
   return {"spread",
-          {{"shape", {"box"}}},
+          {{"shape", {"box", "gaussian"}}},
           {{"width_mm", 2, 0, kMaxWidthMm}},
-          [](const EffectSpec& spec, const Grid& grid) {
-            return Reach{{weights(spec, grid, 0).reach, weights(spec, grid, 1).reach}, 0, 0};
-          },
           [](const EffectSpec& spec, const Grid& grid, ModelForm& form) {
-            form.spread_x = weights(spec, grid, 0);
-            form.spread_y = weights(spec, grid, 1);
+            for (DoseTerm& term : form.terms) {
+              term.x = kernel(spec, grid, 0);
+              term.y = kernel(spec, grid, 1);
+            }
           }};
 }
 

@@ -9,9 +9,8 @@ EffectKind threshold_kind() {
   return {"threshold",
           {},
           {{"level", 1, 0, 1}},
-          [](const EffectSpec&, const Grid&) { return Reach{}; },
           [](const EffectSpec& spec, const Grid&, ModelForm& form) {
-            form.level = spec.number("level");
+            form.bind_at(spec.number("level"));
           }};
 }
 

@@ -80,14 +80,21 @@ void StackWriter::write(int index, const RunLayer& layer) const {
 }
 
 void StackWriter::write_packed(int index, std::span<const std::byte> bits) const {
-  const std::string name = fmt::sprintf(info_.files, info_.first + index);
-  write_file(part_ + "/" + name, encode_png_mask(bits, info_.size[0], info_.size[1],
-                                                 {info_.pitch_mm[0], info_.pitch_mm[1]}));
+  write_file(image_name(index), encode_png_mask(bits, info_.size[0], info_.size[1],
+                                                {info_.pitch_mm[0], info_.pitch_mm[1]}));
+}
+
+void StackWriter::write_file(const std::string& name, std::span<const std::byte> bytes) const {
+  binderjet::write_file(part_ + "/" + name, bytes);
+}
+
+std::string StackWriter::image_name(int index) const {
+  return fmt::sprintf(info_.files, info_.first + index);
 }
 
 void StackWriter::finish() {
   const std::string text = to_json(info_).dump(1) + "\n";
-  write_file(part_ + "/stack.json", std::as_bytes(std::span(text)));
+  write_file("stack.json", std::as_bytes(std::span(text)));
   // A folder cannot be replaced in one step, so the earlier stack steps aside first.
   std::error_code error;
   const std::string earlier = part_ + ".earlier";

@@ -40,6 +40,9 @@ class StackWriter {
   // Image `index` (0 is `first`), of the stack's size. Threads may write different images at once.
   void write(int index, const RunLayer& layer) const;
   void write_packed(int index, std::span<const std::byte> bits) const;
+  // A file of the folder as it is: an image that somebody else encoded, or what goes with them.
+  void write_file(const std::string& name, std::span<const std::byte> bytes) const;
+  std::string image_name(int index) const;
   void finish();
 
   const StackInfo& info() const { return info_; }

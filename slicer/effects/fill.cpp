@@ -1,0 +1,15 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "slicer/effects/fill.h"
+
+#include "slicer/effects/model.h"
+
+namespace binderjet {
+
+EffectKind fill_kind() {
+  return {
+      "fill", {}, {{"level", 1, 0, 1}}, [](const EffectSpec& spec, const Grid&, ModelForm& form) {
+        form.bind_at(spec.number("level"));
+      }};
+}
+
+}  // namespace binderjet
