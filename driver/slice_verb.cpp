@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // slice PART... -p PROFILE -o JOB: models in, a printable job out.
 #include <fmt/format.h>
+#include <oneapi/tbb/global_control.h>
 
 #include <CLI/CLI.hpp>
 #include <chrono>
@@ -32,6 +33,7 @@ struct SliceOptions {
   Placement placement;
   std::vector<std::string> at;
   std::string layers;
+  std::optional<int> threads;
 };
 
 // "A:B" as numbers; either may be empty.
@@ -118,6 +120,11 @@ EncodedLayer encode(int layer, const MaskLayer& masks) {
 
 void slice(const SliceOptions& options, const Console& console) {
   const auto start = std::chrono::steady_clock::now();
+  std::optional<oneapi::tbb::global_control> cores;
+  if (options.threads) {
+    cores.emplace(oneapi::tbb::global_control::max_allowed_parallelism,
+                  static_cast<std::size_t>(*options.threads));
+  }
   JobHeader header;
   header.profile = load_profile(options.profile);
   header.grid = header.profile.grid(options.layer_mm);
@@ -183,6 +190,8 @@ void add_slice_verb(CLI::App& program) {
   verb->add_option("--at", options->at,
                    "X,Y in mm: the part's lower corner on the bed; once per part")
       ->allow_extra_args(false);
+  verb->add_option("--threads", options->threads, "how many cores to use; the result is the same")
+      ->check(CLI::Range(1, 1024));
   verb->add_option("--layers", options->layers, "A:B, slice only layers A <= k < B (see join)");
   verb->callback([options, console = add_console_options(*verb)] { slice(*options, *console); });
 }

@@ -5,6 +5,7 @@
 #include <array>
 #include <bit>
 #include <cstdint>
+#include <utility>
 #include <vector>
 
 #include "slicer/enhance/bit_count.h"
@@ -13,11 +14,11 @@
 namespace binderjet {
 namespace {
 
-// The rule runs on tiles, one 64-bit word a row: 62 columns and one on each side, 64 rows and one
+// The rule runs on tiles, one 64-bit word a row: 62 columns and one on each side, 32 rows and one
 // above and below. Only tiles that hold boundary voxels of V are drawn, so the cost is the
 // boundary's.
 constexpr int kColumns = 62;
-constexpr int kRows = 64;
+constexpr int kRows = 32;
 constexpr int kDrawnRows = kRows + 2;
 using Words = std::array<std::uint64_t, kDrawnRows>;
 
@@ -31,14 +32,14 @@ Slab slab(const VoxelLayer* below, const VoxelLayer& layer, const VoxelLayer* ab
   return out;
 }
 
-// Which tiles of a band of rows hold boundary voxels.
+// Finds the tiles of a band of rows that hold its boundary voxels.
 class ActiveTiles {
  public:
-  explicit ActiveTiles(int width) : active_(static_cast<std::size_t>(width / kColumns) + 1) {}
+  explicit ActiveTiles(int width) : width_(width) {}
 
-  // The first columns of the active tiles, ascending.
+  // The first columns of the tiles, ascending; each begins where there is something to see.
   const std::vector<int>& find(const Slab& volume, int y) {
-    std::fill(active_.begin(), active_.end(), false);
+    ranges_.clear();
     for (std::size_t s = 0; s < volume.size(); ++s) {
       for (int row = y - 1; row <= y + kRows; ++row) {
         const std::span<const int> here = row_of(volume[s], row);
@@ -46,16 +47,21 @@ class ActiveTiles {
         // Rows with as many flips differ only between flips of the same rank, and those are seen
         // to by widen; others are compared where they meet.
         const std::span<const int> before = row_of(volume[s], row - 1);
-        if (row >= y && before.size() != here.size()) mark_difference(before, here);
+        if (row >= y && before.size() != here.size()) add_difference(before, here);
         if (s == 0) continue;
         const std::span<const int> under = row_of(volume[s - 1], row);
-        if (under.size() != here.size()) mark_difference(under, here);
+        if (under.size() != here.size()) add_difference(under, here);
       }
     }
     flush();
+    std::sort(ranges_.begin(), ranges_.end());
     tiles_.clear();
-    for (std::size_t tile = 0; tile < active_.size(); ++tile) {
-      if (active_[tile]) tiles_.push_back(static_cast<int>(tile) * kColumns);
+    int covered = 0;
+    for (const auto& [first, last] : ranges_) {
+      for (int x = std::max(first, covered); x <= std::min(last, width_ - 1); x = covered) {
+        tiles_.push_back(x);
+        covered = x + kColumns;
+      }
     }
     return tiles_;
   }
@@ -79,30 +85,24 @@ class ActiveTiles {
     }
   }
   void flush() {
-    for (std::size_t i = 0; i < low_.size(); ++i) mark(low_[i] - 1, high_[i]);
+    for (std::size_t i = 0; i < low_.size(); ++i) ranges_.emplace_back(low_[i] - 1, high_[i]);
     low_.clear();
     high_.clear();
   }
 
   // Each row is the exclusive or of the half-lines from its flips, so two rows differ only between
   // flips of the same rank; what one row has more is taken as one.
-  void mark_difference(std::span<const int> a, std::span<const int> b) {
+  void add_difference(std::span<const int> a, std::span<const int> b) {
     const std::size_t both = std::min(a.size(), b.size());
     for (std::size_t i = 0; i < both; ++i) {
-      if (a[i] != b[i]) mark(std::min(a[i], b[i]) - 1, std::max(a[i], b[i]));
+      if (a[i] != b[i]) ranges_.emplace_back(std::min(a[i], b[i]) - 1, std::max(a[i], b[i]));
     }
     const std::span<const int> rest = (a.size() > both ? a : b).subspan(both);
-    if (!rest.empty()) mark(rest.front() - 1, rest.back());
+    if (!rest.empty()) ranges_.emplace_back(rest.front() - 1, rest.back());
   }
 
-  void mark(int first, int last) {
-    const int last_tile = std::min(last / kColumns, static_cast<int>(active_.size()) - 1);
-    for (int tile = std::max(first, 0) / kColumns; tile <= last_tile; ++tile) {
-      active_[static_cast<std::size_t>(tile)] = true;
-    }
-  }
-
-  std::vector<char> active_;
+  int width_;
+  std::vector<std::pair<int, int>> ranges_;  // columns, first to last
   std::vector<int> tiles_;
   std::vector<int> low_;  // per rank, over the rows of the same number of flips
   std::vector<int> high_;

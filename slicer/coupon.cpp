@@ -1,0 +1,212 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "slicer/coupon.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <cmath>
+#include <cstdint>
+#include <cstring>
+#include <filesystem>
+#include <map>
+#include <numbers>
+#include <utility>
+
+#include "slicer/error.h"
+#include "slicer/stack/png.h"
+
+namespace binderjet {
+namespace {
+
+Point sum(const Point& a, const Point& b) { return {a[0] + b[0], a[1] + b[1], a[2] + b[2]}; }
+Point scaled(const Point& a, double s) { return {a[0] * s, a[1] * s, a[2] * s}; }
+double dot(const Point& a, const Point& b) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }
+Point unit(const Point& a) { return scaled(a, 1 / std::sqrt(dot(a, a))); }
+
+// Boxes may touch or overlap: the winding number unites them.
+void add_box(Mesh& mesh, const Point& low, const Point& high) {
+  const int base = static_cast<int>(mesh.points.size());
+  for (int corner = 0; corner < 8; ++corner) {
+    mesh.points.push_back({(corner & 1) != 0 ? high[0] : low[0], (corner & 2) != 0 ? high[1] : low[1],
+                           (corner & 4) != 0 ? high[2] : low[2]});
+  }
+  constexpr std::array<Triangle, 12> kFaces = {{{0, 2, 1}, {1, 2, 3}, {4, 5, 6}, {5, 7, 6},
+                                                {0, 1, 4}, {1, 5, 4}, {2, 6, 3}, {3, 6, 7},
+                                                {0, 4, 2}, {2, 4, 6}, {1, 3, 5}, {3, 7, 5}}};
+  for (const Triangle& t : kFaces) mesh.triangles.push_back({t[0] + base, t[1] + base, t[2] + base});
+}
+
+// A box between two corners, with x and y exchanged where `along_y`.
+void add_turned(Mesh& mesh, Point low, Point high, bool along_y) {
+  if (along_y) {
+    std::swap(low[0], low[1]);
+    std::swap(high[0], high[1]);
+  }
+  add_box(mesh, low, high);
+}
+
+Mesh slots() {
+  constexpr double kBar = 2;      // solid between two slots
+  constexpr double kDepth = 6;    // length of a slot
+  constexpr double kHeight = 4;
+  constexpr double kBottom = 1;   // solid below the slots, so that the block stays one piece
+  constexpr double kGap = 2;
+  Mesh mesh;
+  for (const bool along_y : {false, true}) {
+    const double side = along_y ? -kGap - kDepth : 0;
+    double x = 0;
+    for (int tenth = 1; tenth <= 11; ++tenth) {
+      add_turned(mesh, {x, side, 0}, {x + kBar, side + kDepth, kHeight}, along_y);
+      x += kBar + (tenth <= 10 ? tenth / 10.0 : 0);
+    }
+    add_turned(mesh, {0, side, 0}, {x, side + kDepth, kBottom}, along_y);
+  }
+  return mesh;
+}
+
+Mesh walls() {
+  constexpr double kLength = 8;
+  constexpr double kHeight = 4;
+  constexpr double kPlate = 1;
+  constexpr double kGap = 2;
+  Mesh mesh;
+  for (const bool along_y : {false, true}) {
+    const double side = along_y ? -kGap - kLength : 0;
+    double x = kGap;
+    for (int tenth = 1; tenth <= 15; ++tenth) {
+      add_turned(mesh, {x, side, 0}, {x + tenth / 10.0, side + kLength, kHeight}, along_y);
+      x += tenth / 10.0 + kGap;
+    }
+    add_turned(mesh, {0, side, 0}, {x, side + kLength, kPlate}, along_y);
+  }
+  return mesh;
+}
+
+// A unit ball of 20 * 4^rounds triangles, cut from an icosahedron.
+Mesh unit_ball(int rounds) {
+  const double golden = std::numbers::phi;
+  Mesh mesh;
+  for (const double a : {-1.0, 1.0}) {
+    for (const double b : {-golden, golden}) {
+      for (const Point& p : {Point{0, a, b}, Point{a, b, 0}, Point{b, 0, a}}) {
+        mesh.points.push_back(unit(p));
+      }
+    }
+  }
+  // The faces are the triples of corners that are neighbours of each other.
+  const auto neighbors = [&](int a, int b) {
+    return dot(mesh.points[static_cast<std::size_t>(a)], mesh.points[static_cast<std::size_t>(b)]) >
+           0.4;
+  };
+  for (int a = 0; a < 12; ++a) {
+    for (int b = a + 1; b < 12; ++b) {
+      for (int c = b + 1; c < 12; ++c) {
+        if (!neighbors(a, b) || !neighbors(b, c) || !neighbors(a, c)) continue;
+        const Point& p = mesh.points[static_cast<std::size_t>(a)];
+        const Point& q = mesh.points[static_cast<std::size_t>(b)];
+        const Point& r = mesh.points[static_cast<std::size_t>(c)];
+        const Point cross = {q[1] * r[2] - q[2] * r[1], q[2] * r[0] - q[0] * r[2],
+                             q[0] * r[1] - q[1] * r[0]};
+        mesh.triangles.push_back(dot(p, cross) > 0 ? Triangle{a, b, c} : Triangle{a, c, b});
+      }
+    }
+  }
+  for (int round = 0; round < rounds; ++round) {
+    std::map<std::pair<int, int>, int> middles;
+    const auto middle = [&](int a, int b) {
+      const auto [place, added] = middles.try_emplace(std::minmax(a, b), 0);
+      if (added) {
+        place->second = static_cast<int>(mesh.points.size());
+        mesh.points.push_back(unit(sum(mesh.points[static_cast<std::size_t>(a)],
+                                       mesh.points[static_cast<std::size_t>(b)])));
+      }
+      return place->second;
+    };
+    std::vector<Triangle> finer;
+    for (const Triangle& t : mesh.triangles) {
+      const int ab = middle(t[0], t[1]);
+      const int bc = middle(t[1], t[2]);
+      const int ca = middle(t[2], t[0]);
+      finer.insert(finer.end(), {{t[0], ab, ca}, {ab, t[1], bc}, {ca, bc, t[2]}, {ab, bc, ca}});
+    }
+    mesh.triangles = std::move(finer);
+  }
+  return mesh;
+}
+
+Mesh golf_ball() {
+  constexpr double kRadius = 42.7 / 2;  // the smallest that the rules of golf allow
+  constexpr int kDimples = 336;
+  constexpr double kDimpleAngle = 0.095;
+  constexpr double kDimpleDepth = 0.25;
+  constexpr int kRounds = 7;
+  // Centres on a golden spiral lie about as far apart as so many can.
+  const double turn = 2 * std::numbers::pi * (2 - std::numbers::phi);
+  std::vector<Point> centers;
+  for (int i = 0; i < kDimples; ++i) {
+    const double z = 1 - (2 * i + 1.0) / kDimples;
+    const double r = std::sqrt(1 - z * z);
+    centers.push_back({r * std::cos(i * turn), r * std::sin(i * turn), z});
+  }
+  Mesh mesh = unit_ball(kRounds);
+  for (Point& point : mesh.points) {
+    // The centres are sorted by z, falling; only those within a dimple's height matter.
+    const auto first = std::lower_bound(
+        centers.begin(), centers.end(), point[2] + kDimpleAngle,
+        [](const Point& center, double z) { return center[2] > z; });
+    double nearest = 0;
+    for (auto c = first; c != centers.end() && (*c)[2] >= point[2] - kDimpleAngle; ++c) {
+      nearest = std::max(nearest, dot(*c, point));
+    }
+    const double t = std::acos(std::min(nearest, 1.0)) / kDimpleAngle;
+    const double dent = t < 1 ? kDimpleDepth * (1 - t * t) : 0;
+    point = scaled(point, kRadius - dent);
+  }
+  return mesh;
+}
+
+template <class Value>
+void put(std::vector<std::byte>& out, Value value) {
+  const auto bytes = std::bit_cast<std::array<std::byte, sizeof(Value)>>(value);
+  out.insert(out.end(), bytes.begin(), bytes.end());
+}
+
+}  // namespace
+
+const std::vector<std::string>& coupon_kinds() {
+  static const std::vector<std::string> kinds = {"slots", "walls", "golfball"};
+  return kinds;
+}
+
+Mesh coupon(const std::string& kind) {
+  if (kind == "slots") return slots();
+  if (kind == "walls") return walls();
+  if (kind == "golfball") return golf_ball();
+  throw Error(ErrorKind::kUsage, "--kind",
+              fmt::format("\"{}\" is not one of {}", kind, fmt::join(coupon_kinds(), ", ")));
+}
+
+void write_stl(const Mesh& mesh, const std::string& path) {
+  static_assert(std::endian::native == std::endian::little, "STL is little-endian");
+  std::vector<std::byte> file(80, std::byte{' '});
+  file.reserve(84 + 50 * mesh.triangles.size());
+  put(file, static_cast<std::uint32_t>(mesh.triangles.size()));
+  for (const Triangle& triangle : mesh.triangles) {
+    for (int i = 0; i < 3; ++i) put(file, 0.0F);  // readers work the normal out for themselves
+    for (const int corner : triangle) {
+      for (const double value : mesh.points[static_cast<std::size_t>(corner)]) {
+        put(file, static_cast<float>(value));
+      }
+    }
+    put(file, std::uint16_t{0});
+  }
+  const std::string part = path + ".part";
+  write_file(part, file);
+  std::error_code error;
+  std::filesystem::rename(part, path, error);
+  if (error) throw Error(ErrorKind::kBadInput, path, "cannot rename: " + error.message());
+}
+
+}  // namespace binderjet
