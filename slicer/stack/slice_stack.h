@@ -40,6 +40,8 @@ class StackWriter {
   // Image `index` (0 is `first`), of the stack's size. Threads may write different images at once.
   void write(int index, const RunLayer& layer) const;
   void write_packed(int index, std::span<const std::byte> bits) const;
+  // 24-bit rows of red, green, blue.
+  void write_rgb(int index, std::span<const std::byte> rgb) const;
   void finish();
 
   const StackInfo& info() const { return info_; }
