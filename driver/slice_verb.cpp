@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // slice PART... -p PROFILE -o JOB: models in, a printable job out.
 #include <fmt/format.h>
+#include <malloc.h>
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
@@ -151,7 +152,7 @@ std::unique_ptr<Stream<EncodedLayer>> colored_layers(const JobHeader& header,
                      header.grid, header.box, skins, std::move(field));
   // A bitmap and its compressed form are in memory for each layer being painted. On a large part
   // fewer are painted at once than there may be cores.
-  constexpr std::int64_t kBitmapBytes = std::int64_t{128} << 20;
+  constexpr std::int64_t kBitmapBytes = std::int64_t{64} << 20;
   const std::int64_t bytes = std::int64_t{6} * header.box.size_px[0] * header.box.size_px[1];
   const auto places = std::make_shared<std::counting_semaphore<>>(
       std::clamp<std::int64_t>(kBitmapBytes / bytes, 1, 64));
@@ -186,6 +187,9 @@ void slice(const SliceOptions& options, const Console& console) {
   header.enhance = options.enhance;
   header.passes = options.enhance == "paper" ? options.passes : 0;
   std::vector<Part> parts = load_parts(options, header);
+#ifdef __GLIBC__
+  malloc_trim(0);  // what reading and repair freed, or it counts beside all that follows
+#endif
   std::vector<std::string> warnings;
   for (const Part& part : parts) {
     header.sources.push_back(part.source);

@@ -1,8 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Creases darkened: ambient occlusion and concavity at samples of the mesh, mixed like any color.
-#include <CGAL/AABB_traits.h>
-#include <CGAL/AABB_tree.h>
-#include <CGAL/AABB_triangle_primitive.h>
 #include <CGAL/Orthogonal_k_neighbor_search.h>
 #include <CGAL/Search_traits_3.h>
 #include <CGAL/Search_traits_adapter.h>
@@ -12,10 +9,11 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
+#include <numeric>
 #include <utility>
 
 #include "slicer/color/color.h"
+#include "slicer/color/triangle_tree.h"
 
 namespace binderjet {
 namespace {
@@ -87,8 +85,7 @@ std::vector<Vector> hemisphere() {
 
 // Occlusion by what stands within the radius, 0 to 1. Rays of different lengths make near things
 // count more than far ones.
-template <class Tree>
-double occlusion(const Tree& tree, const Place& place, const Vector& n, double radius_mm,
+double occlusion(const TriangleTree& tree, const Place& place, const Vector& n, double radius_mm,
                  const std::vector<Vector>& directions) {
   const Vector other = std::abs(n.x()) < 0.6 ? Vector(1, 0, 0) : Vector(0, 1, 0);
   Vector s = CGAL::cross_product(n, other);
@@ -142,18 +139,9 @@ std::shared_ptr<const ColorField> crease_field(std::shared_ptr<const ColorField>
   const double radius_mm = settings.crease_radius_mm;
   const Samples samples = sample(mesh, radius_mm / 8);
 
-  std::vector<Kernel::Triangle_3> triangles;
-  triangles.reserve(mesh.triangles.size());
-  for (const Triangle& t : mesh.triangles) {
-    const auto place = [&](int corner) {
-      const Point& p = mesh.points[static_cast<std::size_t>(corner)];
-      return Place(p[0], p[1], p[2]);
-    };
-    triangles.emplace_back(place(t[0]), place(t[1]), place(t[2]));
-  }
-  using Iterator = std::vector<Kernel::Triangle_3>::const_iterator;
-  using Primitive = CGAL::AABB_triangle_primitive<Kernel, Iterator>;
-  CGAL::AABB_tree<CGAL::AABB_traits<Kernel, Primitive>> tree(triangles.cbegin(), triangles.cend());
+  std::vector<int> order(mesh.triangles.size());
+  std::iota(order.begin(), order.end(), 0);
+  TriangleTree tree(order.cbegin(), order.cend(), TriangleView{&mesh.points, &mesh.triangles});
   tree.build();
 
   using Map = CGAL::Pointer_property_map<Place>::const_type;

@@ -3,21 +3,16 @@
 //
 // Each layer has a tree of its own, so memory is one layer's triangles and a layer's colors depend
 // on nothing but the layer. Equal distances go to the triangle with the lower number.
-#include <CGAL/AABB_traits.h>
-#include <CGAL/AABB_tree.h>
-#include <CGAL/Simple_cartesian.h>
-
 #include <algorithm>
 #include <cmath>
 #include <limits>
 #include <utility>
 
 #include "slicer/color/field.h"
+#include "slicer/color/triangle_tree.h"
 
 namespace binderjet {
 namespace {
-
-using Kernel = CGAL::Simple_cartesian<double>;
 
 // Surface this far above and below a layer is in its tree. Boundary voxels are within one voxel
 // of the surface; an enhanced mask's within a few.
@@ -72,55 +67,15 @@ std::array<double, 3> nearest_weights(const Point& p, const std::array<Point, 3>
   return best;
 }
 
-std::array<Point, 3> corners_of(const Paint& paint, int triangle) {
-  const Triangle& t = paint.triangles[static_cast<std::size_t>(triangle)];
-  return {paint.points[static_cast<std::size_t>(t[0])],
-          paint.points[static_cast<std::size_t>(t[1])],
-          paint.points[static_cast<std::size_t>(t[2])]};
-}
-
-// What CGAL's tree holds: the number of a triangle.
-class Primitive {
- public:
-  using Id = int;
-  using Point = Kernel::Point_3;
-  using Datum = Kernel::Triangle_3;
-  using Datum_reference = Kernel::Triangle_3;
-  using Point_reference = Kernel::Point_3;
-  using Shared_data = const Paint*;
-
-  Primitive() = default;
-  Primitive(const std::vector<int>::const_iterator& place, const Paint*) : id_(*place) {}
-  static const Paint* construct_shared_data(const Paint* paint) { return paint; }
-
-  Id id() const { return id_; }
-  Datum datum(const Paint* paint) const {
-    const auto t = corners_of(*paint, id_);
-    return {place(t[0]), place(t[1]), place(t[2])};
-  }
-  Point reference_point(const Paint* paint) const {
-    return place(
-        paint
-            ->points[static_cast<std::size_t>(paint->triangles[static_cast<std::size_t>(id_)][0])]);
-  }
-
- private:
-  static Point place(const binderjet::Point& p) { return {p[0], p[1], p[2]}; }
-  int id_ = 0;
-};
-
-using TreeTraits = CGAL::AABB_traits<Kernel, Primitive>;
-using Tree = CGAL::AABB_tree<TreeTraits>;
-
 // Walks the boxes that may hold something nearer than what was found.
 class NearestTraversal {
  public:
-  NearestTraversal(const Paint& paint, double squared_mm) : paint_(paint) {
+  NearestTraversal(const TriangleView& view, double squared_mm) : view_(view) {
     nearest_.squared_mm = squared_mm;
   }
   static bool go_further() { return true; }
-  void intersection(const Point& query, const Primitive& primitive) {
-    const std::array<Point, 3> t = corners_of(paint_, primitive.id());
+  void intersection(const Point& query, const TrianglePrimitive& primitive) {
+    const std::array<Point, 3> t = view_.corners(primitive.id());
     const std::array<double, 3> weights = nearest_weights(query, t);
     double squared = 0;
     for (std::size_t axis = 0; axis < 3; ++axis) {
@@ -147,7 +102,7 @@ class NearestTraversal {
   const Nearest& nearest() const { return nearest_; }
 
  private:
-  const Paint& paint_;
+  TriangleView view_;
   Nearest nearest_;
 };
 
@@ -161,6 +116,8 @@ class SurfaceField : public ColorField {
   std::unique_ptr<ColorSlab> slab(double low_mm, double high_mm) const override {
     return std::make_unique<Slab>(*this, near(low_mm - kMarginMm, high_mm + kMarginMm));
   }
+
+  TriangleView view() const { return {&paint_.points, &paint_.triangles}; }
 
   FloatRgb color(const Nearest& nearest) const {
     const auto t = static_cast<std::size_t>(nearest.triangle);
@@ -188,10 +145,10 @@ class SurfaceField : public ColorField {
 
   // Where a layer's own surface has nothing, all of it is asked, one triangle after the other.
   Nearest nearest_of_all(const Point& point) const {
-    NearestTraversal search(paint_, std::numeric_limits<double>::infinity());
+    NearestTraversal search(view(), std::numeric_limits<double>::infinity());
     const std::vector<int> all =
         near(-std::numeric_limits<double>::infinity(), std::numeric_limits<double>::infinity());
-    for (auto i = all.begin(); i != all.end(); ++i) search.intersection(point, {i, &paint_});
+    for (const int i : all) search.intersection(point, TrianglePrimitive(i));
     return search.nearest();
   }
 
@@ -201,25 +158,39 @@ class SurfaceField : public ColorField {
     Slab(const SurfaceField& field, std::vector<int> triangles) : field_(field) {
       if (triangles.empty()) return;
       const std::vector<int>& order = triangles;
-      tree_.insert(order.begin(), order.end(), &field.paint_);
+      tree_.insert(order.begin(), order.end(), field.view());
       tree_.build();
       empty_ = false;
     }
     FloatRgb at(const Point& point) const override {
-      // Most points are close to the surface; a small ball saves most of the walk.
+      // Points are asked in rows, so the last one's triangle bounds the walk from the start.
+      if (last_.id() >= 0) {
+        NearestTraversal search(field_.view(), std::numeric_limits<double>::infinity());
+        search.intersection(point, last_);
+        if (search.nearest().squared_mm < kMarginMm * kMarginMm) return walk(point, search);
+      }
       for (const double reach_mm : {0.1, kMarginMm}) {
         if (empty_) break;
-        NearestTraversal search(field_.paint_, reach_mm * reach_mm);
+        NearestTraversal search(field_.view(), reach_mm * reach_mm);
         tree_.traversal(point, search);
-        if (search.nearest().triangle >= 0) return field_.color(search.nearest());
+        if (search.nearest().triangle < 0) continue;
+        last_ = TrianglePrimitive(search.nearest().triangle);
+        return field_.color(search.nearest());
       }
       return field_.color(field_.nearest_of_all(point));
     }
 
    private:
+    FloatRgb walk(const Point& point, NearestTraversal& search) const {
+      tree_.traversal(point, search);
+      last_ = TrianglePrimitive(search.nearest().triangle);
+      return field_.color(search.nearest());
+    }
+
     const SurfaceField& field_;
-    Tree tree_;
+    TriangleTree tree_;
     bool empty_ = true;
+    mutable TrianglePrimitive last_{-1};
   };
 
   // Triangles of similar height together, each class in order of lowest points: those that meet a

@@ -54,9 +54,15 @@ Open open_image(const TextureSource& source) {
   OIIO::ImageSpec config;
   config.attribute("oiio:UnassociatedAlpha", 1);  // a transparent texel keeps its color
   if (source.path.empty()) {
+    // Not ImageInput::open, which looks for a file of that name even so.
+    const char* name = format_of(source.bytes);
     open.memory = std::make_unique<OIIO::Filesystem::IOMemReader>(
         const_cast<std::byte*>(source.bytes.data()), source.bytes.size());
-    open.input = OIIO::ImageInput::open(format_of(source.bytes), &config, open.memory.get());
+    open.input = OIIO::ImageInput::create(name, false, nullptr, open.memory.get());
+    OIIO::ImageSpec spec;
+    const bool good = open.input != nullptr && open.input->set_ioproxy(open.memory.get()) &&
+                      open.input->open(name, spec, config);
+    if (!good) open.input.reset();
   } else {
     open.input = OIIO::ImageInput::open(source.path, &config);
   }
