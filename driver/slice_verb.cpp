@@ -102,7 +102,7 @@ void use_texture(const std::string& file, Paint& paint) {
   }
   paint.textures = {{file, file, {}, {}}};
   std::fill(paint.images.begin(), paint.images.end(), 0);
-  std::fill(paint.corners.begin(), paint.corners.end(), std::array<Rgb, 3>{kWhite, kWhite, kWhite});
+  paint.corners = {};
 }
 
 // Reads the parts and decides where each stands: where --at says, else as they fit.

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "slicer/color/color.h"
 
-#include <algorithm>
 #include <utility>
 
 namespace binderjet {
@@ -12,9 +11,7 @@ std::shared_ptr<const ColorField> paint_field(Paint paint, const ColorSettings& 
     return sample_field(std::move(paint.samples), std::move(paint.sample_colors),
                         settings.neighbors);
   }
-  const bool white = std::all_of(paint.corners.begin(), paint.corners.end(), [](const auto& c) {
-    return c == std::array<Rgb, 3>{kWhite, kWhite, kWhite};
-  });
+  const bool white = paint.corners.empty();
   if (white && paint.has_loose_uvs()) {
     warnings.push_back(
         "has texture coordinates but names no image; for its colors name it with --texture");

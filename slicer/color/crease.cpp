@@ -104,6 +104,19 @@ double occlusion(const TriangleTree& tree, const Place& place, const Vector& n, 
   return static_cast<double>(hits) / kDirections;
 }
 
+std::vector<int> triangles_between(const Mesh& mesh, double low_mm, double high_mm) {
+  std::vector<int> found;
+  for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
+    const auto z = [&](std::size_t corner) {
+      return mesh.points[static_cast<std::size_t>(mesh.triangles[t][corner])][2];
+    };
+    if (std::max({z(0), z(1), z(2)}) >= low_mm && std::min({z(0), z(1), z(2)}) <= high_mm) {
+      found.push_back(static_cast<int>(t));
+    }
+  }
+  return found;
+}
+
 class CreaseField : public ColorField {
  public:
   CreaseField(std::shared_ptr<const ColorField> base, std::shared_ptr<const ColorField> shade)
@@ -139,11 +152,6 @@ std::shared_ptr<const ColorField> crease_field(std::shared_ptr<const ColorField>
   const double radius_mm = settings.crease_radius_mm;
   const Samples samples = sample(mesh, radius_mm / 8);
 
-  std::vector<int> order(mesh.triangles.size());
-  std::iota(order.begin(), order.end(), 0);
-  TriangleTree tree(order.cbegin(), order.cend(), TriangleView{&mesh.points, &mesh.triangles});
-  tree.build();
-
   using Map = CGAL::Pointer_property_map<Place>::const_type;
   using Traits = CGAL::Search_traits_adapter<std::size_t, Map, CGAL::Search_traits_3<Kernel>>;
   using Search = CGAL::Orthogonal_k_neighbor_search<Traits>;
@@ -155,7 +163,7 @@ std::shared_ptr<const ColorField> crease_field(std::shared_ptr<const ColorField>
 
   const std::vector<Vector> directions = hemisphere();
   std::vector<Rgb> shades(samples.places.size());
-  oneapi::tbb::parallel_for(std::size_t{0}, samples.places.size(), [&](std::size_t i) {
+  const auto shade = [&](const TriangleTree& tree, std::size_t i) {
     const Place& here = samples.places[i];
     const Vector& normal = samples.normals[i];
     const double occluded = occlusion(tree, here, normal, radius_mm, directions);
@@ -173,7 +181,27 @@ std::shared_ptr<const ColorField> crease_field(std::shared_ptr<const ColorField>
     const double dark = settings.crease_strength * std::min(1.0, 1.5 * occluded + concave);
     const auto level = static_cast<std::uint8_t>(std::lround(255 * (1 - dark)));
     shades[i] = {level, level, level};
+  };
+
+  // In bands of z, each with a tree of the triangles its rays can meet: a tree of a whole scan
+  // would be the largest thing in memory.
+  const Box box = bounding_box(mesh);
+  const double band_mm = std::max(4 * radius_mm, box.size(2) / 32);
+  std::vector<std::size_t>& by_z = indices;
+  std::sort(by_z.begin(), by_z.end(), [&](std::size_t a, std::size_t b) {
+    return std::pair(samples.places[a].z(), a) < std::pair(samples.places[b].z(), b);
   });
+  for (std::size_t first = 0; first < by_z.size();) {
+    const double low_mm = samples.places[by_z[first]].z();
+    std::size_t last = first;
+    while (last < by_z.size() && samples.places[by_z[last]].z() <= low_mm + band_mm) ++last;
+    const std::vector<int> near =
+        triangles_between(mesh, low_mm - 1.1 * radius_mm, low_mm + band_mm + 1.1 * radius_mm);
+    TriangleTree tree(near.cbegin(), near.cend(), TriangleView{&mesh.points, &mesh.triangles});
+    tree.build();
+    oneapi::tbb::parallel_for(first, last, [&](std::size_t i) { shade(tree, by_z[i]); });
+    first = last;
+  }
   std::vector<Point> points;
   points.reserve(samples.places.size());
   for (const Place& p : samples.places) points.push_back({p.x(), p.y(), p.z()});

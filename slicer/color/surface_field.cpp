@@ -121,8 +121,8 @@ class SurfaceField : public ColorField {
 
   FloatRgb color(const Nearest& nearest) const {
     const auto t = static_cast<std::size_t>(nearest.triangle);
-    FloatRgb out{};
-    for (std::size_t c = 0; c < 3; ++c) {
+    FloatRgb out = {255, 255, 255};
+    for (std::size_t c = 0; c < 3 && !paint_.corners.empty(); ++c) {
       double value = 0;
       for (std::size_t i = 0; i < 3; ++i) value += nearest.weights[i] * paint_.corners[t][i][c];
       out[c] = static_cast<float>(value);

@@ -97,6 +97,10 @@ Paint Painter::take(const Mesh& mesh, bool by_vertex) {
     }
   }
   if (!colored_ && paint.uvs.empty()) return {};
+  if (std::all_of(paint.corners.begin(), paint.corners.end(),
+                  [](const auto& corners) { return corners == kWhiteCorners; })) {
+    paint.corners = {};
+  }
   paint.points = mesh.points;
   paint.triangles = mesh.triangles;
   return paint;

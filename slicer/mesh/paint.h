@@ -41,7 +41,7 @@ struct Paint {
 
   std::vector<Point> points;  // of the triangles
   std::vector<Triangle> triangles;
-  std::vector<std::array<Rgb, 3>> corners;  // per triangle; multiplies the image where there is one
+  std::vector<std::array<Rgb, 3>> corners;  // per triangle; multiplies its image. Empty: white
   std::vector<int> images;                  // per triangle, -1 without; empty if no triangle has
   std::vector<std::array<Uv, 3>> uvs;       // per triangle; as long as `images`
   std::vector<TextureSource> textures;
