@@ -4,6 +4,7 @@
 #include <oneapi/tbb/parallel_for.h>
 
 #include <CLI/CLI.hpp>
+#include <array>
 #include <filesystem>
 #include <memory>
 #include <string>
@@ -13,6 +14,7 @@
 #include "driver/mask_source.h"
 #include "driver/printed.h"
 #include "driver/verbs.h"
+#include "slicer/color/separate.h"
 #include "slicer/error.h"
 #include "slicer/stack/cuberille.h"
 #include "slicer/stack/slice_stack.h"
@@ -26,6 +28,7 @@ struct ExportOptions {
   std::string out;
   std::string what = "mask";
   std::string cuberille;
+  std::string separate;
   bool full_bed = false;
 };
 
@@ -91,6 +94,40 @@ void export_target(const MaskSource& job, const ExportOptions& options, const Co
   stack.finish();
 }
 
+void export_color(const MaskSource& job, const ExportOptions& options, const Console& console) {
+  if (!job.color) {
+    throw Error(ErrorKind::kUsage, job.path,
+                "has no color; its models had none when it was sliced");
+  }
+  StackWriter stack(options.out, job.stack_info(StackKind::kColor));
+  Progress progress(console, "writing", job.size_px[2]);
+  for_each_layer(job.size_px[2], progress,
+                 [&](int index) { stack.write_rgb(index, job.color(index)); });
+  stack.finish();
+}
+
+// Three stacks of drops: cyan, magenta and yellow, each in a folder of its name.
+void export_planes(const MaskSource& job, const ExportOptions& options, const Console& console) {
+  if (!job.color) {
+    throw Error(ErrorKind::kUsage, job.path,
+                "has no color; its models had none when it was sliced");
+  }
+  constexpr std::array<const char*, 3> kInks = {"cyan", "magenta", "yellow"};
+  std::vector<std::unique_ptr<StackWriter>> stacks;
+  for (const char* ink : kInks) {
+    StackInfo info = job.stack_info(StackKind::kColor);
+    info.files = std::string(ink) + "_%06d.png";
+    stacks.push_back(std::make_unique<StackWriter>(options.out + "/" + ink, info));
+  }
+  Progress progress(console, "writing", job.size_px[2]);
+  for_each_layer(job.size_px[2], progress, [&](int index) {
+    const std::array<RunLayer, 3> planes =
+        separate_cmy(job.color(index), job.size_px[0], job.size_px[1], job.first + index);
+    for (std::size_t c = 0; c < 3; ++c) stacks[c]->write(index, planes[c]);
+  });
+  for (const auto& stack : stacks) stack->finish();
+}
+
 void export_cuberille(const MaskSource& job, const std::string& path, const Console& console) {
   CuberilleWriter writer(path, job.header->grid);
   Progress progress(console, "writing", job.size_px[2]);
@@ -106,11 +143,19 @@ void run(const ExportOptions& options, const Console& console) {
   if (options.out.empty() == options.cuberille.empty()) {
     throw Error(ErrorKind::kUsage, "export", "name one of -o DIR and --cuberille FILE.ply");
   }
-  if (options.full_bed && (options.what != "mask" || options.out.empty())) {
+  if (!options.separate.empty() && options.out.empty()) {
+    throw Error(ErrorKind::kUsage, "--separate", "needs a folder, -o DIR");
+  }
+  if (options.full_bed &&
+      (options.what != "mask" || options.out.empty() || !options.separate.empty())) {
     throw Error(ErrorKind::kUsage, "--full-bed", "is for masks only");
   }
   if (!options.cuberille.empty()) {
     export_cuberille(job, options.cuberille, console);
+  } else if (!options.separate.empty()) {
+    export_planes(job, options, console);
+  } else if (options.what == "color") {
+    export_color(job, options, console);
   } else if (options.what == "mask") {
     export_masks(job, options, console);
   } else if (options.what == "target") {
@@ -120,7 +165,9 @@ void run(const ExportOptions& options, const Console& console) {
                   job.header->grid, options.out, console);
   }
   const std::string& out = options.out.empty() ? options.cuberille : options.out;
-  console.result({{"out", out}, {"what", options.what}, {"layers", job.size_px[2]}},
+  console.result({{"out", out},
+                  {"what", options.separate.empty() ? options.what : options.separate},
+                  {"layers", job.size_px[2]}},
                  fmt::format("{}: {} layers", out, job.size_px[2]));
 }
 
@@ -131,11 +178,15 @@ void add_export_verb(CLI::App& program) {
   auto options = std::make_shared<ExportOptions>();
   verb->add_option("JOB", options->job, "a job (.bjob)")->required();
   verb->add_option("-o,--output", options->out, "the folder to write: stack.json and PNGs");
-  verb->add_option(
-          "--what", options->what,
-          "mask: what is sent; target: the voxels we want; printed: what the model says comes out")
-      ->check(CLI::IsMember({"mask", "target", "printed"}))
+  verb->add_option("--what", options->what,
+                   "mask: what is sent; color: its color; target: the voxels we want; printed: "
+                   "what the model "
+                   "says comes out")
+      ->check(CLI::IsMember({"mask", "color", "target", "printed"}))
       ->capture_default_str();
+  verb->add_option("--separate", options->separate,
+                   "cmy: the color as 1-bit planes, in the folders cyan, magenta and yellow")
+      ->check(CLI::IsMember({"cmy"}));
   verb->add_flag("--full-bed", options->full_bed, "masks of the whole bed, the part in its place");
   verb->add_option("--cuberille", options->cuberille,
                    "write the masks' voxels as a PLY mesh (the paper's own output)");

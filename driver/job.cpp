@@ -61,22 +61,24 @@ std::array<double, 3> JobHeader::origin_mm() const {
 std::string to_text(const JobHeader& header) {
   Json sources = Json::array();
   for (const Source& source : header.sources) sources.push_back(to_json(source));
-  const Json json = {{"format", "binderjet-job"},
-                     {"version", 1},
-                     {"program", BINDERJET_VERSION},
-                     {"size_px", header.box.size_px},
-                     {"pitch_mm", header.grid.pitch_mm},
-                     {"detail_vx", header.grid.detail_vx},
-                     {"origin_mm", header.origin_mm()},
-                     {"margin_px", header.box.margin_px},
-                     {"bed_px", header.box.bed_px},
-                     {"enhance", header.enhance},
-                     {"passes", header.passes},
-                     {"sources", sources},
-                     {"profile",
-                      {{"name", header.profile.name},
-                       {"hash", text_hash(header.profile.text)},
-                       {"text", header.profile.text}}}};
+  Json json = {{"format", "binderjet-job"},
+               {"version", 1},
+               {"program", BINDERJET_VERSION},
+               {"size_px", header.box.size_px},
+               {"pitch_mm", header.grid.pitch_mm},
+               {"detail_vx", header.grid.detail_vx},
+               {"origin_mm", header.origin_mm()},
+               {"margin_px", header.box.margin_px},
+               {"bed_px", header.box.bed_px},
+               {"enhance", header.enhance},
+               {"passes", header.passes},
+               {"sources", sources},
+               {"profile",
+                {{"name", header.profile.name},
+                 {"hash", text_hash(header.profile.text)},
+                 {"text", header.profile.text}}}};
+  // Only where it is, so that plain jobs stay byte for byte what they were.
+  if (header.color) json["color"] = {{"enhanced", header.color_enhanced}};
   return json.dump();
 }
 
@@ -107,6 +109,8 @@ JobHeader parse_job_header(const std::string& text, const std::string& where) {
     json.at("detail_vx").get_to(header.grid.detail_vx);
     json.at("enhance").get_to(header.enhance);
     json.at("passes").get_to(header.passes);
+    header.color = json.contains("color");
+    if (header.color) json.at("color").at("enhanced").get_to(header.color_enhanced);
     for (const Json& source : json.at("sources")) header.sources.push_back(source_of(source));
     for (const int size : header.box.size_px) {
       if (size < 1 || size > (1 << 24)) throw Error(ErrorKind::kBadInput, where, "has a bad size");
@@ -118,12 +122,18 @@ JobHeader parse_job_header(const std::string& text, const std::string& where) {
   }
 }
 
-Part load_part(const std::string& file, std::optional<double> unit_mm, const Placement& placement) {
+Part load_part(const std::string& file, std::optional<double> unit_mm, const Placement& placement,
+               bool with_paint) {
   Part part;
   part.source.file = file;
   part.source.hash = file_hash(file);
   MeshFile read = read_mesh(file);
   part.mesh = std::move(read.mesh);
+  if (with_paint) {
+    part.paint = std::move(read.paint);
+  } else {
+    read.paint = {};
+  }
   part.warnings = std::move(read.warnings);
   const Repair repair = repair_mesh(part.mesh, file);
   for (const std::string& note : repair.notes) part.warnings.push_back(file + ": " + note);
@@ -131,13 +141,42 @@ Part load_part(const std::string& file, std::optional<double> unit_mm, const Pla
   part.source.placement = placement;
   part.source.placement.unit_mm = unit_mm.value_or(read.unit_mm);
   part.request.where = file;
-  part.request.size_mm = transform_part(part.mesh, part.source.placement, file);
+  part.request.size_mm = transform_part(part.mesh, part.source.placement, file,
+                                        {&part.paint.points, &part.paint.samples});
   part.request.at_mm = placement.at_mm;
   part.request.scale = placement.scale;
   part.request.unit_declared = read.unit_declared || unit_mm.has_value();
   const std::string doubt = doubtful_size(part.request);
   if (!doubt.empty()) part.warnings.push_back(file + ": " + doubt);
   return part;
+}
+
+std::shared_ptr<const ColorField> take_color(std::vector<Part>& parts, const Grid& grid,
+                                             const ColorSettings& settings,
+                                             std::vector<std::string>& warnings) {
+  std::vector<Source> sources;
+  for (const Part& part : parts) sources.push_back(part.source);
+  const std::array<int, 2> corner = lower_corner(sources);
+  std::vector<PartField> fields;
+  bool colored = false;
+  for (Part& part : parts) {
+    PartField field{bounding_box(part.mesh), nullptr};
+    for (std::size_t axis = 0; axis < 2; ++axis) {
+      const double shift_mm = (part.source.corner_px[axis] - corner[axis]) * grid.pitch_mm[axis];
+      field.box.min[axis] += shift_mm;
+      field.box.max[axis] += shift_mm;
+      if (shift_mm == 0) continue;
+      for (Point& point : part.paint.points) point[axis] += shift_mm;
+      for (Point& point : part.paint.samples) point[axis] += shift_mm;
+    }
+    std::vector<std::string> notes;
+    field.field = paint_field(std::move(part.paint), settings, notes);
+    for (const std::string& note : notes) warnings.push_back(part.source.file + ": " + note);
+    colored |= field.field != nullptr;
+    if (!field.field) field.field = plain_field(kWhite);
+    fields.push_back(std::move(field));
+  }
+  return colored ? bed_field(std::move(fields)) : nullptr;
 }
 
 Mesh merge_parts(std::vector<Part> parts, const Grid& grid) {

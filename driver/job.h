@@ -9,9 +9,11 @@
 #include <vector>
 
 #include "driver/profile.h"
+#include "slicer/color/color.h"
 #include "slicer/grid.h"
 #include "slicer/masks.h"
 #include "slicer/mesh/mesh.h"
+#include "slicer/mesh/paint.h"
 #include "slicer/mesh/place.h"
 
 namespace binderjet {
@@ -30,6 +32,8 @@ struct JobHeader {
   JobBox box;
   std::string enhance = "none";
   int passes = 0;
+  bool color = false;           // it has color records
+  bool color_enhanced = false;  // with creases darkened
   std::vector<Source> sources;
 
   int layers() const { return box.size_px[2]; }
@@ -49,15 +53,23 @@ JobHeader parse_job_header(const std::string& text, const std::string& where);
 // A part read from its file, repaired, in millimetres and turned, its lower corner at (0, 0, 0).
 struct Part {
   Mesh mesh;
+  Paint paint;    // in the same coordinates
   Source source;  // corner_px is not yet decided
   BedRequest request;
   std::vector<std::string> warnings;
 };
-// `unit_mm` overrides what the file declares.
-Part load_part(const std::string& file, std::optional<double> unit_mm, const Placement& placement);
+// `unit_mm` overrides what the file declares. Paint is left out unless asked for.
+Part load_part(const std::string& file, std::optional<double> unit_mm, const Placement& placement,
+               bool with_paint = false);
 
 // The lower corner of all parts on the bed, in pixels.
 std::array<int, 2> lower_corner(const std::vector<Source>& sources);
+
+// The color of the parts in the job's coordinates, taken from them; none if no part has any.
+// Warnings name the part.
+std::shared_ptr<const ColorField> take_color(std::vector<Part>& parts, const Grid& grid,
+                                             const ColorSettings& settings,
+                                             std::vector<std::string>& warnings);
 
 // The parts as one mesh in the job's coordinates: the lower corner of them all at (0, 0, 0).
 Mesh merge_parts(std::vector<Part> parts, const Grid& grid);

@@ -34,8 +34,9 @@ class SourceStream : public Stream<RunLayer> {
   LayerRange rest_;
 };
 
-std::vector<std::byte> read_mask(const JobReader& reader, int layer, std::size_t size) {
-  std::vector<std::byte> bits = value_or_throw(reader.read(RecordKind::kMask, layer));
+std::vector<std::byte> read_layer(const JobReader& reader, RecordKind kind, int layer,
+                                  std::size_t size) {
+  std::vector<std::byte> bits = value_or_throw(reader.read(kind, layer));
   if (bits.size() != size) {
     throw Error(ErrorKind::kBadInput, fmt::format("{}: layer {}", reader.path(), layer),
                 "is not of the size that the job declares");
@@ -104,8 +105,15 @@ MaskSource open_job(const std::string& path, const Console& console) {
   const std::size_t size =
       packed_row_bytes(source.size_px[0]) * static_cast<std::size_t>(source.size_px[1]);
   source.packed = [reader, size, first = source.first](int index) {
-    return read_mask(*reader, first + index, size);
+    return read_layer(*reader, RecordKind::kMask, first + index, size);
   };
+  if (source.header->color) {
+    const std::size_t bytes = 3 * static_cast<std::size_t>(source.size_px[0]) *
+                              static_cast<std::size_t>(source.size_px[1]);
+    source.color = [reader, bytes, first = source.first](int index) {
+      return read_layer(*reader, RecordKind::kColor, first + index, bytes);
+    };
+  }
   return source;
 }
 

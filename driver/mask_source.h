@@ -25,6 +25,8 @@ struct MaskSource {
   std::array<double, 3> origin_mm{};  // of the first layer's lower corner
   // The mask of layer first + index, packed (see pack()); threads may read different ones at once.
   std::function<std::vector<std::byte>(int index)> packed;
+  // Likewise its color bitmap, 24-bit rows; empty function if the job has no color.
+  std::function<std::vector<std::byte>(int index)> color;
 
   LayerRange layers() const { return {first, first + size_px[2]}; }
   RunLayer read(int index) const { return unpack(packed(index), size_px[0], size_px[1]); }

@@ -139,6 +139,26 @@ void parse_device(Table table, Profile& profile) {
   table.no_other_keys();
 }
 
+ColorSettings parse_color(Table table) {
+  ColorSettings color;
+  if (table.has("depth_mm")) color.depth_mm = table.numbers("depth_mm", 1, -1e-9, 5).front();
+  if (table.has("neighbors")) {
+    const double count = table.numbers("neighbors", 1, 0, 64).front();
+    color.neighbors = static_cast<int>(count);
+    if (color.neighbors != count || count < 1) {
+      table.fail(table.need("neighbors").source(), "neighbors must be a whole number");
+    }
+  }
+  if (table.has("crease_strength")) {
+    color.crease_strength = table.numbers("crease_strength", 1, -1e-9, 1).front();
+  }
+  if (table.has("crease_radius_mm")) {
+    color.crease_radius_mm = table.numbers("crease_radius_mm", 1, 0, 100).front();
+  }
+  table.no_other_keys();
+  return color;
+}
+
 template <std::size_t N>
 std::array<double, N> fixed(const std::vector<double>& values) {
   std::array<double, N> out{};
@@ -239,6 +259,7 @@ Profile parse_profile(const std::string& text, const std::string& path) {
     profile.binder_per_powder = binder.numbers("per_powder", 1, 0, 1).front();
     binder.no_other_keys();
   }
+  if (root.has("color")) profile.color = parse_color(root.table("color"));
   parse_device(root.table("device"), profile);
   root.no_other_keys();
   return profile;

@@ -1,12 +1,16 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // slice PART... -p PROFILE -o JOB: models in, a printable job out.
 #include <fmt/format.h>
+#include <malloc.h>
 #include <oneapi/tbb/global_control.h>
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <chrono>
+#include <filesystem>
 #include <memory>
 #include <optional>
+#include <semaphore>
 #include <string>
 #include <vector>
 
@@ -15,6 +19,9 @@
 #include "driver/job.h"
 #include "driver/result.h"
 #include "driver/verbs.h"
+#include "slicer/color/color.h"
+#include "slicer/color/shell.h"
+#include "slicer/color/skin.h"
 #include "slicer/effects/model.h"
 #include "slicer/masks.h"
 #include "transport/job_file.h"
@@ -34,6 +41,8 @@ struct SliceOptions {
   std::vector<std::string> at;
   std::string layers;
   std::optional<int> threads;
+  std::string texture;
+  bool color_enhance = false;
 };
 
 // "A:B" as numbers; either may be empty.
@@ -84,6 +93,20 @@ std::optional<double> unit_of(const std::string& word) {
   return unit_mm;
 }
 
+// The image for a model that has a place in it for each triangle but names none, or another.
+void use_texture(const std::string& file, Paint& paint) {
+  if (paint.uvs.empty()) {
+    throw Error(ErrorKind::kUsage, "--texture", "is for models with texture coordinates");
+  }
+  std::error_code error;
+  if (!std::filesystem::is_regular_file(file, error)) {
+    throw Error(ErrorKind::kUsage, "--texture", file + " is not there");
+  }
+  paint.textures = {{file, file, {}, {}}};
+  std::fill(paint.images.begin(), paint.images.end(), 0);
+  paint.corners = {};
+}
+
 // Reads the parts and decides where each stands: where --at says, else as they fit.
 std::vector<Part> load_parts(const SliceOptions& options, const JobHeader& header) {
   if (options.at.size() > options.parts.size()) {
@@ -99,7 +122,8 @@ std::vector<Part> load_parts(const SliceOptions& options, const JobHeader& heade
       if (!at[0] || !at[1]) throw Error(ErrorKind::kUsage, "--at", "needs X,Y in mm");
       placement.at_mm = {*at[0], *at[1]};
     }
-    parts.push_back(load_part(options.parts[i], unit_mm, placement));
+    parts.push_back(load_part(options.parts[i], unit_mm, placement, true));
+    if (!options.texture.empty()) use_texture(options.texture, parts.back().paint);
     requests.push_back(parts.back().request);
   }
   constexpr double kSpacingMm = 2;
@@ -118,6 +142,45 @@ EncodedLayer encode(int layer, const MaskLayer& masks) {
   return out;
 }
 
+// Masks with the color bitmaps beside them.
+std::unique_ptr<Stream<EncodedLayer>> colored_layers(const JobHeader& header,
+                                                     std::shared_ptr<const Mesh> mesh,
+                                                     std::shared_ptr<const ColorField> field,
+                                                     LayerRange range) {
+  const auto shell =
+      std::make_shared<const Shell>(header.grid, header.box, header.profile.color.depth_mm, field);
+  const LayerRange skins = grown(range, shell->reach(), header.layers());
+  auto layers = skin(mask_stream(header, std::move(mesh), grown(skins, 1, header.layers())),
+                     header.grid, header.box, skins, std::move(field));
+  // A bitmap and its compressed form are in memory for each layer being painted. On a large part
+  // fewer are painted at once than there may be cores.
+  constexpr std::int64_t kBitmapBytes = std::int64_t{64} << 20;
+  const std::int64_t bytes = std::int64_t{6} * header.box.size_px[0] * header.box.size_px[1];
+  const auto places = std::make_shared<std::counting_semaphore<>>(
+      std::clamp<std::int64_t>(kBitmapBytes / bytes, 1, 64));
+  using Paint = Step<SkinLayer, EncodedLayer>;
+  return std::make_unique<Paint>(
+      std::move(layers), range, shell->reach(), header.layers(),
+      [shell, places](int layer, Paint::Window window) {
+        EncodedLayer out = encode(layer, *window[static_cast<std::size_t>(shell->reach())]->masks);
+        places->acquire();
+        const std::vector<std::byte> color =
+            encode_record(RecordKind::kColor, layer, shell->paint(layer, window));
+        places->release();
+        out.record.insert(out.record.end(), color.begin(), color.end());
+        return out;
+      });
+}
+
+std::unique_ptr<Stream<EncodedLayer>> plain_layers(const JobHeader& header,
+                                                   std::shared_ptr<const Mesh> mesh,
+                                                   LayerRange range) {
+  using Encode = Step<MaskLayer, EncodedLayer>;
+  return std::make_unique<Encode>(
+      mask_stream(header, std::move(mesh), range), range, 0, header.layers(),
+      [](int layer, Encode::Window window) { return encode(layer, *window[0]); });
+}
+
 void slice(const SliceOptions& options, const Console& console) {
   const auto start = std::chrono::steady_clock::now();
   std::optional<oneapi::tbb::global_control> cores;
@@ -131,26 +194,36 @@ void slice(const SliceOptions& options, const Console& console) {
   header.enhance = options.enhance;
   header.passes = options.enhance == "paper" ? options.passes : 0;
   std::vector<Part> parts = load_parts(options, header);
+#ifdef __GLIBC__
+  malloc_trim(0);  // what reading and repair freed, or it counts beside all that follows
+#endif
   std::vector<std::string> warnings;
   for (const Part& part : parts) {
     header.sources.push_back(part.source);
     warnings.insert(warnings.end(), part.warnings.begin(), part.warnings.end());
   }
+  std::shared_ptr<const ColorField> field =
+      take_color(parts, header.grid, header.profile.color, warnings);
   for (const std::string& warning : warnings) console.warning(warning);
 
   const auto mesh = std::make_shared<const Mesh>(merge_parts(std::move(parts), header.grid));
   header.box = job_box(bounding_box(*mesh), header.grid, lower_corner(header.sources),
                        PrinterModel(header.profile.effects, header.grid).reach().xy_vx);
   const LayerRange range = layer_range(options.layers, header.layers());
+  if (options.color_enhance) {
+    if (!field) field = plain_field(kWhite);
+    field = crease_field(std::move(field), *mesh, header.profile.color);
+  }
+  header.color = field != nullptr;
+  header.color_enhanced = options.color_enhance;
 
   JobWriter writer = value_or_throw(JobWriter::create(options.out, to_text(header)));
   Progress progress(console, "slicing", range.size());
-  using Encode = Step<MaskLayer, EncodedLayer>;
-  Encode stream(mask_stream(header, mesh, range), range, 0, header.layers(),
-                [](int layer, Encode::Window window) { return encode(layer, *window[0]); });
+  const auto stream =
+      field ? colored_layers(header, mesh, field, range) : plain_layers(header, mesh, range);
   Totals totals;
-  while (stream.rest().size() > 0) {
-    for (const Shared<EncodedLayer>& layer : stream.next(kBlockLayers)) {
+  while (stream->rest().size() > 0) {
+    for (const Shared<EncodedLayer>& layer : stream->next(kBlockLayers)) {
       value_or_throw(writer.append(layer->record));
       totals.add(*layer);
     }
@@ -166,7 +239,7 @@ void slice(const SliceOptions& options, const Console& console) {
 void add_slice_verb(CLI::App& program) {
   CLI::App* verb = program.add_subcommand("slice", "turn models into a printable job");
   auto options = std::make_shared<SliceOptions>();
-  verb->add_option("PART", options->parts, "models: STL, PLY, OBJ, OFF, 3MF, glTF and others")
+  verb->add_option("PART", options->parts, "models: STL, PLY, OBJ, OFF, 3MF, VRML, glTF and others")
       ->required();
   verb->add_option("-p,--profile", options->profile, "a printer profile's name or path")
       ->required();
@@ -193,6 +266,10 @@ void add_slice_verb(CLI::App& program) {
   verb->add_option("--threads", options->threads, "how many cores to use; the result is the same")
       ->check(CLI::Range(1, 1024));
   verb->add_option("--layers", options->layers, "A:B, slice only layers A <= k < B (see join)");
+  verb->add_option("--texture", options->texture,
+                   "the image for a model whose file has a place in it but names none");
+  verb->add_flag("--color-enhance", options->color_enhance,
+                 "darken creases, so that detail shows in diffuse light");
   verb->callback([options, console = add_console_options(*verb)] { slice(*options, *console); });
 }
 

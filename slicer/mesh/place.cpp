@@ -274,7 +274,8 @@ void transform_mesh(Mesh& mesh, double factor, const std::array<double, 3>& rota
   }
 }
 
-Point transform_part(Mesh& mesh, const Placement& placement, const std::string& where) {
+Point transform_part(Mesh& mesh, const Placement& placement, const std::string& where,
+                     std::initializer_list<std::vector<Point>*> along) {
   const double factor = placement.unit_mm * placement.scale;
   if (!(factor > 0) || !std::isfinite(factor)) {
     throw Error(
@@ -283,8 +284,17 @@ Point transform_part(Mesh& mesh, const Placement& placement, const std::string& 
   }
   transform_mesh(mesh, factor, placement.rotate_deg);
   const Point corner = bounding_box(mesh).min;
-  for (Point& point : mesh.points) {
-    for (std::size_t i = 0; i < 3; ++i) point[i] -= corner[i];
+  const auto shift = [&corner](std::vector<Point>& points) {
+    for (Point& point : points) {
+      for (std::size_t i = 0; i < 3; ++i) point[i] -= corner[i];
+    }
+  };
+  shift(mesh.points);
+  for (std::vector<Point>* points : along) {
+    Mesh other{std::move(*points), {}};
+    transform_mesh(other, factor, placement.rotate_deg);
+    shift(other.points);
+    *points = std::move(other.points);
   }
   const Box box = bounding_box(mesh);
   return box.max;

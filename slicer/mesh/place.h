@@ -3,6 +3,7 @@
 #pragma once
 
 #include <array>
+#include <initializer_list>
 #include <optional>
 #include <string>
 #include <vector>
@@ -49,8 +50,10 @@ std::optional<double> unit_from_word(const std::string& word);
 void transform_mesh(Mesh& mesh, double factor, const std::array<double, 3>& rotate_deg);
 
 // Units, scale and rotation; then the lower corner of the bounding box is exactly 0, 0, 0.
-// Returns the box's size in mm. Throws Error for a scale that is not above 0.
-Point transform_part(Mesh& mesh, const Placement& placement, const std::string& where);
+// `along` are other points of the part, which move with it. Returns the box's size in mm. Throws
+// Error for a scale that is not above 0.
+Point transform_part(Mesh& mesh, const Placement& placement, const std::string& where,
+                     std::initializer_list<std::vector<Point>*> along = {});
 
 // A spot for every part, in the same order. A single part without a wish stands in the middle of
 // the bed; several are laid in rows, `spacing_mm` apart and around those that have their spot, and

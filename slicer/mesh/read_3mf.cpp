@@ -8,8 +8,11 @@
 #include <charconv>
 #include <cmath>
 #include <limits>
+#include <map>
 #include <memory>
+#include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "slicer/error.h"
@@ -21,7 +24,9 @@ namespace {
 using Affine = std::array<std::array<double, 3>, 4>;  // rows as in 3MF: a point is a row vector
 
 struct Release {
-  void operator()(NMR::PLib3MFBase* object) const { NMR::lib3mf_release(object); }
+  void operator()(NMR::PLib3MFBase* object) const {
+    if (object != nullptr) NMR::lib3mf_release(object);
+  }
 };
 template <typename T>
 using Handle = std::unique_ptr<T, Release>;
@@ -105,6 +110,7 @@ class Reader3mf {
       throw Error(ErrorKind::kBadInput, name_,
                   "its build names no model; add an item to the build");
     }
+    result_.paint = painter_.take(result_.mesh, true);
     return std::move(result_);
   }
 
@@ -203,7 +209,11 @@ class Reader3mf {
       }
       mesh.points.push_back(point);
     }
+    NMR::PLib3MFPropertyHandler* handler = nullptr;
+    demand(NMR::lib3mf_meshobject_createpropertyhandler(object, &handler), object);
+    const Handle<NMR::PLib3MFPropertyHandler> handler_owner(handler);
     for (const NMR::MODELMESHTRIANGLE& triangle : triangles) {
+      paint(handler, static_cast<DWORD>(&triangle - triangles.data()), mirrored);
       Triangle corners{};
       for (std::size_t c = 0; c < 3; ++c) {
         if (triangle.m_nIndices[c] >= point_count) {
@@ -216,11 +226,99 @@ class Reader3mf {
     }
   }
 
+  void paint(NMR::PLib3MFPropertyHandler* handler, DWORD index, bool mirrored) {
+    NMR::eModelPropertyType type = NMR::MODELPROPERTYTYPE_NONE;
+    NMR::lib3mf_propertyhandler_getpropertytype(handler, index, &type);
+    if (type == NMR::MODELPROPERTYTYPE_COLOR) {
+      NMR::MODELMESH_TRIANGLECOLOR_SRGB color{};
+      demand(NMR::lib3mf_propertyhandler_getcolor(handler, index, &color), handler);
+      std::array<Rgb, 3> corners{};
+      for (std::size_t c = 0; c < 3; ++c) {
+        corners[c] = {color.m_Colors[c].m_Red, color.m_Colors[c].m_Green, color.m_Colors[c].m_Blue};
+      }
+      if (mirrored) std::swap(corners[1], corners[2]);
+      painter_.add_corners(corners);
+    } else if (type == NMR::MODELPROPERTYTYPE_TEXCOORD2D) {
+      NMR::MODELMESHTEXTURE2D texture{};
+      demand(NMR::lib3mf_propertyhandler_gettexture(handler, index, &texture), handler);
+      std::array<Uv, 3> uvs{};
+      for (std::size_t c = 0; c < 3; ++c) uvs[c] = {texture.m_fU[c], texture.m_fV[c]};
+      if (mirrored) std::swap(uvs[1], uvs[2]);
+      const int image = image_of(texture.m_nTextureID);
+      const Rgb base = image < 0 ? kNeutral : kWhite;
+      painter_.add_textured(image, uvs, {base, base, base});
+    } else if (type == NMR::MODELPROPERTYTYPE_BASEMATERIALS) {
+      DWORD group = 0;
+      DWORD material = 0;
+      demand(NMR::lib3mf_propertyhandler_getbasematerial(handler, index, &group, &material),
+             handler);
+      painter_.add_plain(1, material_color(group, material));
+    } else {
+      painter_.add_plain(1, std::nullopt);
+    }
+  }
+
+  std::optional<Rgb> material_color(DWORD group, DWORD index) {
+    const auto [known, is_new] = materials_.try_emplace({group, index});
+    if (!is_new) return known->second;
+    NMR::PLib3MFModelBaseMaterial* material = nullptr;
+    if (NMR::lib3mf_model_getbasematerialbyid(model_.get(), group, &material) != LIB3MF_OK) {
+      return std::nullopt;
+    }
+    const Handle<NMR::PLib3MFModelBaseMaterial> owner(material);
+    std::array<BYTE, 4> c{};
+    // The id of a material stands one above its place.
+    if (NMR::lib3mf_basematerial_getdisplaycolor(material, index == 0 ? 0 : index - 1, &c[0], &c[1],
+                                                 &c[2], &c[3]) == LIB3MF_OK) {
+      known->second = Rgb{c[0], c[1], c[2]};
+    }
+    return known->second;
+  }
+
+  // The image with this resource id, taken from the archive once; -1 if it is not there.
+  int image_of(DWORD id) {
+    const auto [known, is_new] = images_.try_emplace(id, -1);
+    if (!is_new) return known->second;
+    NMR::PLib3MFModelTexture2D* texture = nullptr;
+    NMR::PLib3MFModelAttachment* attachment = nullptr;
+    const bool found = NMR::lib3mf_model_gettexture2dbyid(model_.get(), id, &texture) == LIB3MF_OK;
+    const Handle<NMR::PLib3MFModelTexture2D> texture_owner(texture);
+    const bool attached =
+        found && NMR::lib3mf_texture2d_getattachment(texture, &attachment) == LIB3MF_OK;
+    const Handle<NMR::PLib3MFModelAttachment> attachment_owner(attachment);
+    ULONG64 size = 0;
+    if (!attached || NMR::lib3mf_attachment_getstreamsize(attachment, &size) != LIB3MF_OK ||
+        size == 0 || size > (ULONG64{1} << 30)) {
+      result_.warnings.push_back("one of its images is missing; painted in neutral grey");
+      return -1;
+    }
+    TextureSource source{fmt::format("image {}", id), "", {}, {}};
+    source.bytes.resize(size);
+    demand(NMR::lib3mf_attachment_writetobuffer(attachment,
+                                                reinterpret_cast<BYTE*>(source.bytes.data()), size),
+           attachment);
+    NMR::eModelTextureTileStyle u = NMR::MODELTEXTURETILESTYLE_WRAP;
+    NMR::eModelTextureTileStyle v = NMR::MODELTEXTURETILESTYLE_WRAP;
+    NMR::lib3mf_texture2d_gettilestyleuv(texture, &u, &v);
+    source.tiling = {tiling(u), tiling(v)};
+    known->second = static_cast<int>(painter_.textures().size());
+    painter_.textures().push_back(std::move(source));
+    return known->second;
+  }
+
+  static Tiling tiling(NMR::eModelTextureTileStyle style) {
+    if (style == NMR::MODELTEXTURETILESTYLE_WRAP) return Tiling::kRepeat;
+    return style == NMR::MODELTEXTURETILESTYLE_MIRROR ? Tiling::kMirror : Tiling::kClamp;
+  }
+
   static constexpr std::size_t kMost = 100'000'000;
 
   std::string name_;
   Handle<NMR::PLib3MFModel> model_;
   MeshFile result_;
+  Painter painter_;
+  std::map<DWORD, int> images_;
+  std::map<std::pair<DWORD, DWORD>, std::optional<Rgb>> materials_;
   std::vector<Affine> path_;  // of the item and the components, outermost first
   int meshes_ = 0;
 };

@@ -1,11 +1,16 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // glTF and whatever else assimp knows: all meshes of the scene where its nodes put them.
+#include <assimp/material.h>
 #include <assimp/postprocess.h>
 #include <assimp/scene.h>
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <array>
 #include <assimp/Importer.hpp>
 #include <cmath>
+#include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -19,7 +24,11 @@ using Matrix = aiMatrix4x4t<double>;
 
 class SceneReader {
  public:
-  SceneReader(const aiScene& scene, const std::string& name) : scene_(scene), name_(name) {}
+  SceneReader(const aiScene& scene, const std::string& path, const std::string& name)
+      : scene_(scene), path_(path), name_(name) {
+    for (unsigned i = 0; i < scene.mNumMaterials; ++i) take_material(*scene.mMaterials[i]);
+    for (unsigned i = 0; i < scene.mNumMeshes; ++i) textured_ |= is_textured(*scene.mMeshes[i]);
+  }
 
   MeshFile read() {
     if (scene_.mRootNode != nullptr) take_node(*scene_.mRootNode, Matrix(), 0);
@@ -27,6 +36,7 @@ class SceneReader {
       result_.warnings.push_back(counted(left_out_, "point or line", "points and lines") +
                                  " without area left out");
     }
+    result_.paint = painter_.take(result_.mesh);
     return std::move(result_);
   }
 
@@ -55,6 +65,10 @@ class SceneReader {
       aiVector3t<double> point(mesh.mVertices[i].x, mesh.mVertices[i].y, mesh.mVertices[i].z);
       if (!matrix.IsIdentity()) point = matrix * point;
       out.points.push_back({point.x, point.y, point.z});
+      // Without images the vertices carry all the colour there is.
+      if (!textured_ && mesh.mColors[0] != nullptr) {
+        painter_.add_sample(out.points.back(), color_at(mesh, i));
+      }
     }
     const bool mirrored = matrix.Determinant() < 0;
     std::vector<int> corners;
@@ -69,16 +83,122 @@ class SceneReader {
         }
         corners.push_back(static_cast<int>(first + face.mIndices[c]));
       }
-      if (mirrored) std::reverse(corners.begin(), corners.end());
+      std::vector<unsigned> vertices(face.mIndices, face.mIndices + face.mNumIndices);
+      if (mirrored) {
+        std::reverse(corners.begin(), corners.end());
+        std::reverse(vertices.begin(), vertices.end());
+      }
       add_polygon(out, corners);
+      paint_face(mesh, vertices);
+    }
+  }
+
+  struct Look {
+    std::optional<Rgb> color;
+    int image = -1;
+    unsigned uv_channel = 0;
+  };
+
+  void take_material(const aiMaterial& material) {
+    Look look;
+    aiString text;
+    const bool named = material.Get(AI_MATKEY_NAME, text) == aiReturn_SUCCESS;
+    const std::string name = named ? text.C_Str() : "";
+    aiColor4D color;
+    // Materials that assimp makes up for files without any have a colour nobody chose.
+    if (name != "DefaultMaterial" &&
+        (material.Get(AI_MATKEY_BASE_COLOR, color) == aiReturn_SUCCESS ||
+         material.Get(AI_MATKEY_COLOR_DIFFUSE, color) == aiReturn_SUCCESS)) {
+      look.color = rgb_of(color.r, color.g, color.b);
+    }
+    for (const aiTextureType type : {aiTextureType_BASE_COLOR, aiTextureType_DIFFUSE}) {
+      aiString file;
+      std::array<aiTextureMapMode, 3> modes{};
+      if (material.GetTexture(type, 0, &file, nullptr, &look.uv_channel, nullptr, nullptr,
+                              modes.data()) != aiReturn_SUCCESS) {
+        continue;
+      }
+      look.image = image_of(file.C_Str(), {tiling(modes[0]), tiling(modes[1])});
+      if (look.image < 0) look.color = kNeutral;
+      break;
+    }
+    looks_.push_back(look);
+  }
+
+  static Tiling tiling(aiTextureMapMode mode) {
+    if (mode == aiTextureMapMode_Mirror) return Tiling::kMirror;
+    return mode == aiTextureMapMode_Wrap ? Tiling::kRepeat : Tiling::kClamp;
+  }
+
+  int image_of(const std::string& file, std::array<Tiling, 2> tiling) {
+    TextureSource source{file, "", {}, tiling};
+    if (const aiTexture* inside = scene_.GetEmbeddedTexture(file.c_str())) {
+      if (inside->mHeight != 0) return missing(file);  // raw texels: no format we read makes them
+      const auto* bytes = reinterpret_cast<const std::byte*>(inside->pcData);
+      source.bytes.assign(bytes, bytes + inside->mWidth);
+    } else {
+      source.path = file_beside(path_, file);
+      if (source.path.empty()) return missing(file);
+    }
+    painter_.textures().push_back(std::move(source));
+    return static_cast<int>(painter_.textures().size()) - 1;
+  }
+
+  int missing(const std::string& file) {
+    result_.warnings.push_back(
+        fmt::format("its image \"{}\" is not in its folder; painted in neutral grey", file));
+    return -1;
+  }
+
+  const Look& look_of(const aiMesh& mesh) const {
+    static const Look kNone;
+    return mesh.mMaterialIndex < looks_.size() ? looks_[mesh.mMaterialIndex] : kNone;
+  }
+  bool is_textured(const aiMesh& mesh) const {
+    const Look& look = look_of(mesh);
+    return look.image >= 0 && look.uv_channel < AI_MAX_NUMBER_OF_TEXTURECOORDS &&
+           mesh.mTextureCoords[look.uv_channel] != nullptr;
+  }
+
+  // The vertex's own colour times the material's, as glTF has it.
+  Rgb color_at(const aiMesh& mesh, unsigned vertex) const {
+    const Rgb base = look_of(mesh).color.value_or(kWhite);
+    if (mesh.mColors[0] == nullptr) return base;
+    const aiColor4D& c = mesh.mColors[0][vertex];
+    if (!std::isfinite(c.r + c.g + c.b)) return base;
+    return rgb_of(c.r * base[0] / 255.0, c.g * base[1] / 255.0, c.b * base[2] / 255.0);
+  }
+
+  void paint_face(const aiMesh& mesh, std::span<const unsigned> vertices) {
+    const Look& look = look_of(mesh);
+    for (std::size_t i = 2; i < vertices.size(); ++i) {
+      const std::array<unsigned, 3> v = {vertices[0], vertices[i - 1], vertices[i]};
+      const std::array<Rgb, 3> colors = {color_at(mesh, v[0]), color_at(mesh, v[1]),
+                                         color_at(mesh, v[2])};
+      if (is_textured(mesh)) {
+        std::array<Uv, 3> uvs{};
+        for (std::size_t c = 0; c < 3; ++c) {
+          const aiVector3D& uv = mesh.mTextureCoords[look.uv_channel][v[c]];
+          uvs[c] = {static_cast<float>(uv.x), static_cast<float>(uv.y)};
+        }
+        painter_.add_textured(look.image, uvs, colors);
+      } else if (mesh.mColors[0] != nullptr) {
+        painter_.add_corners(colors);
+      } else {
+        painter_.add_plain(1, look.color);
+      }
     }
   }
 
   static constexpr std::size_t kMost = 100'000'000;
 
   const aiScene& scene_;
+  const std::string& path_;
   const std::string& name_;
   MeshFile result_;
+  Painter painter_;
+  std::vector<Look> looks_;  // by material
+  bool textured_ = false;    // some mesh has an image
   std::int64_t left_out_ = 0;
 };
 
@@ -99,7 +219,7 @@ MeshFile read_with_assimp(const std::string& path, const std::string& name) {
         ErrorKind::kBadInput, name,
         fmt::format("cannot be read ({}); export it again as STL, PLY, OBJ or 3MF", reason));
   }
-  MeshFile result = SceneReader(*scene, name).read();
+  MeshFile result = SceneReader(*scene, path, name).read();
   if (dot == ".gltf" || dot == ".glb") {
     result.warnings.push_back(
         "glTF is in metres and y-up by its specification, but is read as it is: one unit is 1 mm "

@@ -29,12 +29,15 @@ MeshFile read_any(InputFile& file, const std::string& path) {
   const std::string extension = lower_extension(path);
   const std::string_view start = file.peek(4);
   if (start.starts_with("ply") && (start.back() == '\n' || start.back() == '\r')) {
-    return read_ply(file);
+    return read_ply(file, path);
   }
   if (start == "PK\x03\x04") return read_3mf(path, file.name());
   if (start == "glTF") return read_with_assimp(path, file.name());
+  if (file.peek(5) == "#VRML" || extension == ".wrl" || extension == ".vrml") {
+    return read_wrl(file, path);
+  }
   if (extension == ".stl") return read_stl(file);
-  if (extension == ".obj") return read_obj(file);
+  if (extension == ".obj") return read_obj(file, path);
   if (extension == ".off") return read_off(file);
   if (extension == ".ply") {
     throw Error(ErrorKind::kBadInput, file.name(),

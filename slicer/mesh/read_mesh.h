@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "slicer/mesh/mesh.h"
+#include "slicer/mesh/paint.h"
 
 namespace binderjet {
 
@@ -13,16 +14,17 @@ struct MeshFile {
   Mesh mesh;                          // coordinates as in the file; every index valid, all finite
   double unit_mm = 1.0;               // what one unit of the file is in millimetres
   bool unit_declared = false;         // false: the format carries no unit, 1 mm is a guess
+  Paint paint;                        // its colour, in the same coordinates; empty without
   std::vector<std::string> warnings;  // what was odd but did not stop the reading
 };
 
 // The largest coordinate, in millimetres, that is taken for a real part: a thousand kilometres.
 inline constexpr double kMaxCoordinateMm = 1e9;
 
-// STL (binary and text), PLY, OBJ, OFF, 3MF, glTF/GLB and what assimp knows besides; the content
-// decides where it is unmistakable, else the extension. Polygons are cut into fans: the signed
-// areas of a fan add up to the polygon even where it is concave, so the winding number is right.
-// Throws Error (kBadInput) naming file, line or face.
+// STL (binary and text), PLY, OBJ, OFF, 3MF, VRML, glTF/GLB and what assimp knows besides; the
+// content decides where it is unmistakable, else the extension. Polygons are cut into fans: the
+// signed areas of a fan add up to the polygon even where it is concave, so the winding number is
+// right. Throws Error (kBadInput) naming file, line or face.
 MeshFile read_mesh(const std::string& path);
 
 }  // namespace binderjet

@@ -2,7 +2,9 @@
 // OFF as text, with or without colours and normals: a header, points, faces.
 #include <fmt/format.h>
 
+#include <array>
 #include <cmath>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -32,6 +34,12 @@ class OffWords {
   }
 
   void skip_line() { words_ = Words({}); }
+  // What is left of the line.
+  std::string_view rest_of_line() {
+    const std::string_view rest = words_.rest();
+    skip_line();
+    return rest;
+  }
 
   std::int64_t integer() {
     const std::string_view word = next();
@@ -57,6 +65,29 @@ class OffWords {
   Words words_{{}};
 };
 
+// Three or four numbers are a colour: 0 to 1 if written with a point, else 0 to 255. One number is
+// a place in a colour map that nobody has.
+std::optional<Rgb> color_in(std::string_view text, std::size_t skip = 0) {
+  text = text.substr(0, text.find('#'));
+  Words words(text);
+  std::array<double, 4> values{};
+  std::size_t count = 0;
+  bool has_point = false;
+  for (std::string_view word = words.next(); !word.empty(); word = words.next()) {
+    if (skip > 0) {
+      --skip;
+      continue;
+    }
+    if (count == 4 || !parse_number(word, values[count])) return std::nullopt;
+    if (!std::isfinite(values[count])) return std::nullopt;
+    has_point |= word.find('.') != word.npos;
+    ++count;
+  }
+  if (count < 3) return std::nullopt;
+  const double full = has_point ? 1 : 255;
+  return rgb_of(values[0] / full, values[1] / full, values[2] / full);
+}
+
 }  // namespace
 
 MeshFile read_off(InputFile& file) {
@@ -78,13 +109,20 @@ MeshFile read_off(InputFile& file) {
   check_claim(file, file.here(), faces, 7, "faces");
 
   MeshFile result;
+  Painter painter;
   result.mesh.points.reserve(static_cast<std::size_t>(points));
   for (std::int64_t i = 0; i < points; ++i) {
     const double x = words.number();
     const double y = words.number();
     const double z = words.number();
     result.mesh.points.push_back({x, y, z});
-    if (keyword != "OFF") words.skip_line();
+    if (keyword == "OFF") continue;
+    const std::string_view rest = words.rest_of_line();
+    if (keyword != "COFF" && keyword != "CNOFF") continue;
+    // Three numbers of a normal stand before the colour.
+    if (const auto color = color_in(rest, keyword == "CNOFF" ? 3 : 0)) {
+      painter.add_sample({x, y, z}, *color);
+    }
   }
   result.mesh.triangles.reserve(static_cast<std::size_t>(faces));
   std::vector<int> corners;
@@ -105,9 +143,10 @@ MeshFile read_off(InputFile& file) {
       }
       corners.push_back(static_cast<int>(index));
     }
-    words.skip_line();  // the face's colour
+    painter.add_plain(corners.size() - 2, color_in(words.rest_of_line()));
     add_polygon(result.mesh, corners);
   }
+  result.paint = painter.take(result.mesh);
   return result;
 }
 

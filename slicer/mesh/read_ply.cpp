@@ -8,6 +8,7 @@
 #include <cmath>
 #include <cstring>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -53,13 +54,14 @@ struct Element {
 
 class PlyReader {
  public:
-  explicit PlyReader(InputFile& file) : file_(file) {}
+  PlyReader(InputFile& file, const std::string& path) : file_(file), path_(path) {}
 
   MeshFile read() {
     read_header();
     for (const Element& element : elements_) {
       for (std::int64_t i = 0; i < element.count; ++i) read_item(element, i);
     }
+    result_.paint = painter_.take(result_.mesh);
     return std::move(result_);
   }
 
@@ -92,8 +94,9 @@ class PlyReader {
         element_lines_.push_back(file_.here());
       } else if (keyword == "property") {
         take_property(words);
-      } else if (keyword != "ply" && keyword != "comment" && keyword != "obj_info" &&
-                 !keyword.empty()) {
+      } else if (keyword == "comment") {
+        take_comment(words);
+      } else if (keyword != "ply" && keyword != "obj_info" && !keyword.empty()) {
         refuse_header();
       }
     }
@@ -115,6 +118,112 @@ class PlyReader {
     property.type = *type;
     property.name = words.next();
     elements_.back().properties.push_back(std::move(property));
+  }
+
+  // "comment TextureFile name" is how MeshLab names images.
+  void take_comment(Words words) {
+    if (words.next() != "TextureFile") return;
+    std::string_view name = words.rest();
+    while (name.starts_with(' ')) name.remove_prefix(1);
+    const std::string found = file_beside(path_, std::string(name));
+    if (found.empty()) {
+      result_.warnings.push_back(
+          fmt::format("its image \"{}\" is not in its folder; painted in neutral grey", name));
+      image_of_.push_back(-1);
+      return;
+    }
+    image_of_.push_back(static_cast<int>(painter_.textures().size()));
+    painter_.textures().push_back({std::string(name), found, {}, {}});
+  }
+
+  // Which number of an item a property's value is: red, green, blue, or u, v.
+  static int place_in(std::string_view name, std::span<const std::string_view> names) {
+    if (name.starts_with("diffuse_")) name.remove_prefix(8);
+    for (std::size_t i = 0; i < names.size(); ++i) {
+      if (name == names[i]) return static_cast<int>(i);
+    }
+    return -1;
+  }
+
+  // A colour's number as 0 to 1: whole numbers count up to the type's largest.
+  static double share(Type type, double number) {
+    switch (type) {
+      case Type::kInt8:
+      case Type::kUint8:
+        return number / 255;
+      case Type::kInt16:
+      case Type::kUint16:
+        return number / 65535;
+      case Type::kInt32:
+      case Type::kUint32:
+        return number / 255;  // text files: an int that means a byte
+      case Type::kFloat:
+      case Type::kDouble:
+        break;
+    }
+    return number;
+  }
+
+  void take_extra(const Property& property, std::int64_t index, double number) {
+    constexpr std::array<std::string_view, 3> kColor = {"red", "green", "blue"};
+    constexpr std::array<std::string_view, 3> kShort = {"r", "g", "b"};
+    constexpr std::array<std::string_view, 2> kSt = {"s", "t"};
+    constexpr std::array<std::string_view, 2> kUv = {"u", "v"};
+    constexpr std::array<std::string_view, 2> kTextureUv = {"texture_u", "texture_v"};
+    if (property.length) {
+      if (property.name == "texcoord") item_uvs_.push_back(static_cast<float>(number));
+      return;
+    }
+    if (property.name == "texnumber") item_image_ = static_cast<int>(number);
+    int color = place_in(property.name, kColor);
+    if (color < 0) color = place_in(property.name, kShort);
+    if (color >= 0 && index == 0) {
+      item_color_[static_cast<std::size_t>(color)] = share(property.type, number);
+      color_seen_ |= 1 << color;
+    }
+    for (const auto& names : {kSt, kUv, kTextureUv}) {
+      const int place = place_in(property.name, names);
+      if (place >= 0) {
+        item_uv_[static_cast<std::size_t>(place)] = static_cast<float>(number);
+        uv_seen_ |= 1 << place;
+      }
+    }
+  }
+
+  void paint_point(const Point& point) {
+    if (color_seen_ == 7 && std::isfinite(item_color_[0] + item_color_[1] + item_color_[2])) {
+      painter_.add_sample(point, rgb_of(item_color_[0], item_color_[1], item_color_[2]));
+    }
+    if (uv_seen_ == 3) point_uvs_.push_back(item_uv_);
+  }
+
+  void paint_face() {
+    const std::size_t triangles = corners_.size() < 3 ? 0 : corners_.size() - 2;
+    std::optional<Rgb> color;
+    if (color_seen_ == 7) color = rgb_of(item_color_[0], item_color_[1], item_color_[2]);
+    std::vector<Uv> uvs;
+    if (item_uvs_.size() == 2 * corners_.size()) {
+      for (std::size_t i = 0; i < corners_.size(); ++i) {
+        uvs.push_back({item_uvs_[2 * i], item_uvs_[2 * i + 1]});
+      }
+    } else if (!point_uvs_.empty()) {
+      for (const int corner : corners_) {
+        if (static_cast<std::size_t>(corner) < point_uvs_.size()) {
+          uvs.push_back(point_uvs_[static_cast<std::size_t>(corner)]);
+        }
+      }
+    }
+    if (uvs.size() != corners_.size() || painter_.has_samples()) {
+      painter_.add_plain(triangles, color);
+      return;
+    }
+    const auto image = static_cast<std::size_t>(std::max(0, item_image_));
+    const bool named = image < image_of_.size();
+    const int index = named ? image_of_[image] : -1;
+    const Rgb base = named && index < 0 ? kNeutral : index >= 0 ? kWhite : color.value_or(kWhite);
+    for (std::size_t i = 2; i < corners_.size(); ++i) {
+      painter_.add_textured(index, {uvs[0], uvs[i - 1], uvs[i]}, {base, base, base});
+    }
   }
 
   void check_header() {
@@ -143,6 +252,9 @@ class PlyReader {
     };
     Point point{};
     corners_.clear();
+    item_uvs_.clear();
+    color_seen_ = uv_seen_ = 0;
+    item_image_ = 0;
     for (const Property& property : element.properties) {
       const bool is_corners =
           property.name.starts_with("vertex_ind") && element.name == "face" && property.length;
@@ -161,7 +273,13 @@ class PlyReader {
           take_corner(number, where);
         } else if (element.name == "vertex" && property.name.size() == 1) {
           const int axis = property.name[0] - 'x';
-          if (axis >= 0 && axis < 3) point[static_cast<std::size_t>(axis)] = number;
+          if (axis >= 0 && axis < 3) {
+            point[static_cast<std::size_t>(axis)] = number;
+          } else {
+            take_extra(property, i, number);
+          }
+        } else {
+          take_extra(property, i, number);
         }
       }
     }
@@ -171,6 +289,9 @@ class PlyReader {
                     "has a coordinate that is no finite number; export the model again");
       }
       result_.mesh.points.push_back(point);
+      paint_point(point);
+    } else if (element.name == "face") {
+      paint_face();
     }
     add_polygon(result_.mesh, corners_);
   }
@@ -245,7 +366,18 @@ class PlyReader {
   }
 
   InputFile& file_;
+  const std::string& path_;
   MeshFile result_;
+  Painter painter_;
+  std::vector<int> image_of_;  // by the number that faces use; -1 is not there
+  std::vector<Uv> point_uvs_;
+  // Of the item being read:
+  std::array<double, 3> item_color_{};
+  Uv item_uv_{};
+  std::vector<float> item_uvs_;
+  int item_image_ = 0;
+  int color_seen_ = 0;  // bits: which of red, green, blue were there
+  int uv_seen_ = 0;
   std::vector<Element> elements_;
   std::vector<std::string> element_lines_;
   bool is_text_ = false;
@@ -256,6 +388,6 @@ class PlyReader {
 
 }  // namespace
 
-MeshFile read_ply(InputFile& file) { return PlyReader(file).read(); }
+MeshFile read_ply(InputFile& file, const std::string& path) { return PlyReader(file, path).read(); }
 
 }  // namespace binderjet

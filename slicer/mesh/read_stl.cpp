@@ -2,11 +2,14 @@
 // STL, binary and text: triangles without shared points, welded while they are read.
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <array>
 #include <cctype>
 #include <cmath>
 #include <cstring>
+#include <optional>
 #include <string>
+#include <vector>
 
 #include "slicer/error.h"
 #include "slicer/mesh/boundary.h"
@@ -31,6 +34,48 @@ std::int64_t declared_facets(InputFile& file) {
               "has a coordinate that is no finite number; export the model again");
 }
 
+// The colour in a facet's two attribute bytes, in the two dialects there are. Magics: the header
+// says COLOR= and the part's colour, bit 15 clear is a colour of the facet's own, red lowest.
+// VisCAM and SolidView: bit 15 set is a colour, blue lowest.
+class FacetColors {
+ public:
+  explicit FacetColors(std::string_view header) {
+    const std::size_t word = header.substr(0, 80).find("COLOR=");
+    if (word == header.npos || word + 10 > 80) return;
+    Rgb color{};
+    std::memcpy(color.data(), header.data() + word + 6, 3);
+    part_ = color;
+  }
+
+  std::optional<Rgb> color(std::uint16_t bits) const {
+    const bool flag = (bits & 0x8000) != 0;
+    const Rgb low_first = {level(bits), level(bits >> 5), level(bits >> 10)};
+    if (part_) return flag ? *part_ : low_first;
+    if (!flag) return std::nullopt;
+    return Rgb{low_first[2], low_first[1], low_first[0]};
+  }
+  const std::optional<Rgb>& part() const { return part_; }
+
+ private:
+  static std::uint8_t level(int bits) {
+    return static_cast<std::uint8_t>(((bits & 31) * 255 + 15) / 31);
+  }
+
+  std::optional<Rgb> part_;
+};
+
+// Facets as a header of the Magics dialect declares them, all attribute bytes 0, are of the part's
+// colour: a writer that knows facet colours would not make the whole part black.
+void paint_facets(const FacetColors& colors, const std::vector<std::uint16_t>& bits,
+                  Painter& painter) {
+  const bool all_zero = std::all_of(bits.begin(), bits.end(), [](auto b) { return b == 0; });
+  if (all_zero) {
+    painter.add_plain(bits.size(), colors.part());
+    return;
+  }
+  for (const std::uint16_t b : bits) painter.add_plain(1, colors.color(b));
+}
+
 MeshFile read_binary(InputFile& file) {
   MeshFile result;
   const std::int64_t declared = declared_facets(file);
@@ -46,7 +91,9 @@ MeshFile read_binary(InputFile& file) {
   }
   check_claim(file, file.name(), count, kFacet, "triangles");
 
-  file.bytes(static_cast<std::size_t>(kHeader));
+  const FacetColors colors(file.bytes(static_cast<std::size_t>(kHeader)));
+  std::vector<std::uint16_t> attributes;
+  attributes.reserve(static_cast<std::size_t>(count));
   PointWelder welder;
   result.mesh.triangles.reserve(static_cast<std::size_t>(count));
   for (std::int64_t i = 0; i < count; ++i) {
@@ -65,8 +112,14 @@ MeshFile read_binary(InputFile& file) {
       triangle[c] = welder.add(point);
     }
     result.mesh.triangles.push_back(triangle);
+    std::uint16_t bits = 0;
+    std::memcpy(&bits, facet.data() + 48, sizeof bits);
+    attributes.push_back(bits);
   }
   result.mesh.points = welder.take();
+  Painter painter;
+  paint_facets(colors, attributes, painter);
+  result.paint = painter.take(result.mesh);
   // A file that was cut short lacks a part of the surface; a count that lies does not.
   if (count < declared && !is_closed(result.mesh)) {
     throw Error(ErrorKind::kBadInput, file.name(),

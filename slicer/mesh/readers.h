@@ -17,10 +17,12 @@
 namespace binderjet {
 
 MeshFile read_stl(InputFile& file);
-MeshFile read_obj(InputFile& file);
-MeshFile read_ply(InputFile& file);
+// `path` is where the model lies, for the materials and images beside it.
+MeshFile read_obj(InputFile& file, const std::string& path);
+MeshFile read_ply(InputFile& file, const std::string& path);
 MeshFile read_off(InputFile& file);
 MeshFile read_3mf(const std::string& path, const std::string& name);
+MeshFile read_wrl(InputFile& file, const std::string& path);
 MeshFile read_with_assimp(const std::string& path, const std::string& name);
 
 // Appends a polygon as a fan of triangles. Indices are not checked here.

@@ -77,13 +77,11 @@ Bytes zlib_deflate(Bytes& raw) {
   return out;
 }
 
-}  // namespace
+enum class Samples { kOneBitGrey, kRgb };
 
-std::vector<std::byte> encode_png_mask(std::span<const std::byte> bits, int width, int height,
-                                       std::array<double, 2> pitch_mm) {
-  const std::size_t stride = packed_row_bytes(width);
-  assert(bits.size() == stride * static_cast<std::size_t>(height));
-
+Bytes encode(std::span<const std::byte> pixels, std::size_t stride, int width, int height,
+             Samples samples, std::array<double, 2> pitch_mm) {
+  assert(pixels.size() == stride * static_cast<std::size_t>(height));
   Bytes png;
   for (const unsigned c : {0x89U, 0x50U, 0x4eU, 0x47U, 0x0dU, 0x0aU, 0x1aU, 0x0aU}) {  // .PNG....
     png.push_back(static_cast<std::byte>(c));
@@ -91,7 +89,8 @@ std::vector<std::byte> encode_png_mask(std::span<const std::byte> bits, int widt
   Bytes header;
   put_u32(header, static_cast<std::uint32_t>(width));
   put_u32(header, static_cast<std::uint32_t>(height));
-  for (const int c : {1 /* bit depth */, 0 /* grey */, 0, 0, 0}) {
+  const bool rgb = samples == Samples::kRgb;
+  for (const int c : {rgb ? 8 : 1 /* bit depth */, rgb ? 2 : 0 /* kind of color */, 0, 0, 0}) {
     header.push_back(static_cast<std::byte>(c));
   }
   put_chunk(png, "IHDR", header);
@@ -103,10 +102,22 @@ std::vector<std::byte> encode_png_mask(std::span<const std::byte> bits, int widt
   resolution.push_back(std::byte{1});  // pixels per metre
   put_chunk(png, "pHYs", resolution);
 
-  Bytes rows = filter_up(bits, stride, height);
+  Bytes rows = filter_up(pixels, stride, height);
   put_chunk(png, "IDAT", zlib_deflate(rows));
   put_chunk(png, "IEND", {});
   return png;
+}
+
+}  // namespace
+
+std::vector<std::byte> encode_png_mask(std::span<const std::byte> bits, int width, int height,
+                                       std::array<double, 2> pitch_mm) {
+  return encode(bits, packed_row_bytes(width), width, height, Samples::kOneBitGrey, pitch_mm);
+}
+
+std::vector<std::byte> encode_png_rgb(std::span<const std::byte> rgb, int width, int height,
+                                      std::array<double, 2> pitch_mm) {
+  return encode(rgb, 3 * static_cast<std::size_t>(width), width, height, Samples::kRgb, pitch_mm);
 }
 
 void write_file(const std::string& path, std::span<const std::byte> bytes) {

@@ -92,6 +92,12 @@ std::string StackWriter::image_name(int index) const {
   return fmt::sprintf(info_.files, info_.first + index);
 }
 
+void StackWriter::write_rgb(int index, std::span<const std::byte> rgb) const {
+  const std::string name = fmt::sprintf(info_.files, info_.first + index);
+  write_file(part_ + "/" + name, encode_png_rgb(rgb, info_.size[0], info_.size[1],
+                                                {info_.pitch_mm[0], info_.pitch_mm[1]}));
+}
+
 void StackWriter::finish() {
   const std::string text = to_json(info_).dump(1) + "\n";
   write_file("stack.json", std::as_bytes(std::span(text)));

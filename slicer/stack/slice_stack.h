@@ -43,6 +43,8 @@ class StackWriter {
   // A file of the folder as it is: an image that somebody else encoded, or what goes with them.
   void write_file(const std::string& name, std::span<const std::byte> bytes) const;
   std::string image_name(int index) const;
+  // 24-bit rows of red, green, blue.
+  void write_rgb(int index, std::span<const std::byte> rgb) const;
   void finish();
 
   const StackInfo& info() const { return info_; }

@@ -1,0 +1,43 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The colored shell of a mask: color goes some millimetres deep, because powder is translucent;
+// inside and outside is white.
+#pragma once
+
+#include <cstddef>
+#include <memory>
+#include <span>
+#include <vector>
+
+#include "slicer/color/skin.h"
+
+namespace binderjet {
+
+class Shell {
+ public:
+  // `depth_mm` is measured from the surface to a pixel's centre.
+  Shell(const Grid& grid, const JobBox& box, double depth_mm,
+        std::shared_ptr<const ColorField> field);
+
+  // Layers of skin needed below and above.
+  int reach() const { return reach_[2]; }
+
+  // The bitmap of a layer: 24-bit rows, red first, row 0 is the smallest y. `window` is the skin of
+  // layer - reach() to layer + reach(), null beyond the job's ends. A pixel of the mask takes the
+  // color of the nearest pixel of the skin if that is within the depth. A pixel on the mask's
+  // boundary always has a color: what enhancement made boundary takes that of its neighbours, and
+  // where there are none the surface's own. Pure; takes as much memory as the bitmap.
+  std::vector<std::byte> paint(int layer, std::span<const Shared<SkinLayer>> window) const;
+
+ private:
+  class Band;
+
+  Grid grid_;
+  JobBox box_;
+  std::shared_ptr<const ColorField> field_;
+  std::array<int, 3> reach_{};
+  std::array<std::vector<float>, 3> cost_;  // per axis and offset: squared mm
+  float paint_within_ = 0;
+  float search_within_ = 0;
+};
+
+}  // namespace binderjet
