@@ -21,7 +21,6 @@ int main(int argc, char** argv) {
   add_score_verb(program);
   add_join_verb(program);
   add_print_verb(program);
-  add_queue_verbs(program);
   add_profile_verb(program);
 
   catch_interrupts();

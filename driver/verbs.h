@@ -16,6 +16,5 @@ void add_print_verb(CLI::App& program);
 void add_profile_verb(CLI::App& program);
 void add_simulate_verb(CLI::App& program);
 void add_score_verb(CLI::App& program);
-void add_queue_verbs(CLI::App& program);  // devices, status, cancel, resume
 
 }  // namespace binderjet
