@@ -18,6 +18,7 @@ using protocol::Type;
 
 // Recoveries in a row that bring no new acknowledgement.
 constexpr int kMaxFailures = 3;
+constexpr int kGreetings = 3;
 constexpr auto kGreetTime = std::chrono::seconds(5);
 
 // Someone at the printer pauses it and goes on; everything else that stops it needs a hand, and the
@@ -50,7 +51,13 @@ tl::unexpected<Fault> UsbJob::final(const std::string& what) {
 }
 
 Result<protocol::Welcome> UsbJob::greet() {
-  return session_->greet(Clock::now() + std::min<Clock::duration>(patience_, kGreetTime));
+  // A printer that was just switched on may miss the first one.
+  const auto time = std::min<Clock::duration>(patience_, kGreetTime) / kGreetings;
+  auto welcome = session_->greet(Clock::now() + time);
+  for (int i = 1; i < kGreetings && !welcome && session_->worth_retrying(); ++i) {
+    welcome = session_->greet(Clock::now() + time);
+  }
+  return welcome;
 }
 
 // Waits for one kind of message; others are taken as they come.
@@ -86,6 +93,7 @@ Result<Progress> UsbJob::open(bool resumed) {
 // RESUME, or JOB where the printer has never heard of the job.
 Result<void> UsbJob::reopen() {
   healable_ = false;
+  open_ = false;
   Result<Progress> ready = open(true);
   if (!ready && !healable_ && acknowledged_ == 0 && in_the_way_ == number_) {
     ready = open(false);
@@ -199,15 +207,17 @@ Result<void> UsbJob::recover(Fault fault) {
     if (++failures_ > kMaxFailures) break;
     ++openings_;
     healable_ = false;
+    Result<void> healed;
     if (const auto welcome = greet(); !welcome) {
-      fault = welcome.error();
-      again = session_->worth_retrying();
-      continue;
+      healed = tl::unexpected(welcome.error());
+    } else {
+      healed = reopen();
     }
-    const auto reopened = reopen();
-    if (reopened) return {};
-    fault = reopened.error();
+    if (healed) return {};
     again = healable_ || session_->worth_retrying();
+    // What went wrong first says more than how the attempts to heal it failed, unless one of them
+    // found a reason that no attempt can heal.
+    if (!again) fault = healed.error();
   }
   return tl::unexpected(std::move(fault));
 }
@@ -258,6 +268,7 @@ Result<void> UsbJob::take_progress(const Progress& progress) {
     digest_ = digest;
     failures_ = 0;
   }
+  open_ = true;
   const auto most = static_cast<std::uint32_t>(acknowledged_ + protocol::kMaxCredits);
   limit_ = static_cast<int>(std::min({progress.limit, most, static_cast<std::uint32_t>(layers_)}));
   return {};
@@ -267,9 +278,11 @@ Result<void> UsbJob::take_status(const protocol::Status& status) {
   if (status.state == State::kStopped && !only_paused(status.reasons)) {
     return final("the printer stopped: " + joined(status.reasons));
   }
-  // Messages keep their order, so the acknowledgements came first or are lost.
-  if (number_ != 0 && status.job == number_ &&
-      status.acknowledged != static_cast<std::uint32_t>(acknowledged_)) {
+  if (!open_) return {};
+  // Messages keep their order: had the printer said that a layer or the job is done, it would have
+  // been heard before.
+  if (status.job != number_) return broken("the printer no longer works on the job");
+  if (status.acknowledged != static_cast<std::uint32_t>(acknowledged_)) {
     return broken(fmt::format("the printer has {} layers and has acknowledged {}",
                               status.acknowledged, acknowledged_));
   }

@@ -84,6 +84,7 @@ class UsbJob {
   std::deque<Sent> window_;   // layers acknowledged_ and on
   int posted_ = 0;            // layers below this are on their way
   int limit_ = 0;             // layers below this may be
+  bool open_ = false;         // the printer has said READY in this session
   bool healable_ = false;     // the last fault of take()
   int failures_ = 0;          // since the last acknowledgement
   int openings_ = 0;          // counts recoveries: what was asked before one is not answered

@@ -67,6 +67,7 @@ void PrinterEmulator::end_session() {
   deaf_ = false;
   decoder_.reset();
   frame_bytes_ = 0;
+  faulty_frame_ = flip_next_ = false;
   waiting_.clear();
   answers_.clear();
   layer_began_.reset();

@@ -123,6 +123,8 @@ class PrinterEmulator : public UsbDevice {
   bool open_ = false;  // the session has opened the held job
   protocol::FrameDecoder decoder_;
   std::size_t frame_bytes_ = 0;  // of the frame that is being taken
+  bool faulty_frame_ = false;    // this frame has had its fault
+  bool flip_next_ = false;       // a bit of the next byte arrives wrong
   std::uint32_t next_in_ = 0;
   std::uint32_t next_out_ = 0;
   std::deque<Waiting> waiting_;

@@ -48,12 +48,8 @@ std::optional<UsbTaken> PrinterEmulator::data_fault(std::span<const std::byte> d
   if (fire(F::kShortWrite, layer)) return UsbTaken{UsbOutcome::kOk, taken};
   if (fire(F::kSwallow, layer)) return UsbTaken{UsbOutcome::kOk, data.size()};
   if (fire(F::kFlipBit, layer)) {
-    const std::byte wrong = data[taken] ^ std::byte{0x10};
-    decoder_.feed({&wrong, 1});
-    ++frame_bytes_;
-    UsbTaken rest = take_bytes(data.subspan(taken + 1));
-    rest.bytes += taken + 1;
-    return rest;
+    flip_next_ = true;
+    return std::nullopt;
   }
   if (fire(F::kReset, layer)) {
     end_session();
@@ -89,12 +85,19 @@ UsbTaken PrinterEmulator::take_bytes(std::span<const std::byte> data) {
     });
     if (session_ && waits) {
       if (frame_bytes_ >= kMidFrame) {
-        if (const auto fault = data_fault(data, taken)) return *fault;
+        if (!faulty_frame_) {
+          faulty_frame_ = true;
+          if (const auto fault = data_fault(data, taken)) return *fault;
+        }
       } else {
         most = std::min(most, kMidFrame - frame_bytes_);
       }
     }
-    const std::size_t fed = decoder_.feed(data.subspan(taken, most));
+    if (flip_next_) most = 1;
+    const std::byte flipped = data[taken] ^ std::byte{0x10};
+    const std::size_t fed = decoder_.feed(std::exchange(flip_next_, false)
+                                              ? std::span(&flipped, 1)
+                                              : data.subspan(taken, most));
     taken += fed;
     frame_bytes_ += fed;
     if (!decoder_.fault().empty()) {
@@ -102,6 +105,7 @@ UsbTaken PrinterEmulator::take_bytes(std::span<const std::byte> data) {
       deaf_ = true;
     } else if (const auto frame = decoder_.take_frame()) {
       frame_bytes_ = 0;
+      faulty_frame_ = false;
       take_frame(*frame);
       print_layers();
       if (gone_) return {UsbOutcome::kGone, taken};
