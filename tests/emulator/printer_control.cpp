@@ -57,6 +57,11 @@ std::vector<std::byte> PrinterEmulator::device_id() {
 UsbReply PrinterEmulator::control(const ControlSetup& setup, std::span<const std::byte>) {
   const std::lock_guard lock(mutex_);
   if (gone_) return {UsbOutcome::kGone, {}};
+  if (std::any_of(plan_.begin(), plan_.end(), [](const PlannedFault& fault) {
+        return fault.what == PrinterFault::kHangControl && fault.times != 0;
+      })) {
+    return {UsbOutcome::kNak, {}};
+  }
   UsbReply reply;
   switch (setup.request_type << 8 | setup.request) {
     case 0xa100:  // GET_DEVICE_ID
@@ -158,6 +163,13 @@ void PrinterEmulator::set_plan(FaultPlan plan) {
 std::vector<EmulatedJob> PrinterEmulator::jobs() const {
   const std::lock_guard lock(mutex_);
   return jobs_;
+}
+
+bool PrinterEmulator::wait_for_layers(int layers, std::chrono::milliseconds time) {
+  std::unique_lock lock(mutex_);
+  return printed_.wait_for(lock, time, [&] {
+    return !jobs_.empty() && static_cast<int>(jobs_.back().layers.size()) >= layers;
+  });
 }
 
 int PrinterEmulator::acknowledged() const {

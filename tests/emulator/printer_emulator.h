@@ -4,6 +4,7 @@
 #pragma once
 
 #include <chrono>
+#include <condition_variable>
 #include <cstdint>
 #include <deque>
 #include <functional>
@@ -59,6 +60,9 @@ class PrinterEmulator : public UsbDevice {
   void heal();    // all of it, and the rest of the plan is dropped
   void set_plan(FaultPlan plan);
 
+  // Waits until the newest job has so many acknowledged layers; false after `time`.
+  bool wait_for_layers(int layers, std::chrono::milliseconds time = std::chrono::seconds(20));
+
   // The evidence.
   std::vector<EmulatedJob> jobs() const;  // done ones and the held one, oldest first
   int acknowledged() const;               // layers of the newest job
@@ -105,6 +109,7 @@ class PrinterEmulator : public UsbDevice {
   std::vector<std::byte> device_id();
 
   mutable std::mutex mutex_;
+  std::condition_variable printed_;
   EmulatorOptions options_;
   FaultPlan plan_;
 
