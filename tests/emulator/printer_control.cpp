@@ -165,10 +165,15 @@ std::vector<EmulatedJob> PrinterEmulator::jobs() const {
   return jobs_;
 }
 
-bool PrinterEmulator::wait_for_layers(int layers, std::chrono::milliseconds time) {
+void PrinterEmulator::add_fault(PlannedFault fault) {
+  const std::lock_guard lock(mutex_);
+  plan_.push_back(fault);
+}
+
+bool PrinterEmulator::wait_for_layers(int layers, std::size_t job) {
   std::unique_lock lock(mutex_);
-  return printed_.wait_for(lock, time, [&] {
-    return !jobs_.empty() && static_cast<int>(jobs_.back().layers.size()) >= layers;
+  return printed_.wait_for(lock, std::chrono::seconds(20), [&] {
+    return jobs_.size() >= job && static_cast<int>(jobs_[job - 1].layers.size()) >= layers;
   });
 }
 

@@ -59,9 +59,10 @@ class PrinterEmulator : public UsbDevice {
   void refill();  // powder, binder, the cover closed
   void heal();    // all of it, and the rest of the plan is dropped
   void set_plan(FaultPlan plan);
+  void add_fault(PlannedFault fault);
 
-  // Waits until the newest job has so many acknowledged layers; false after `time`.
-  bool wait_for_layers(int layers, std::chrono::milliseconds time = std::chrono::seconds(20));
+  // Waits until job number `job` (the first is 1) has so many acknowledged layers; false after 20 s.
+  bool wait_for_layers(int layers, std::size_t job = 1);
 
   // The evidence.
   std::vector<EmulatedJob> jobs() const;  // done ones and the held one, oldest first
