@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstddef>
+#include <functional>
 #include <memory>
 #include <span>
 #include <string>
@@ -65,12 +66,30 @@ class Backend {
   // Removes a held job, and makes the sender of an incoming one stop with kInterrupted.
   virtual Result<void> cancel(const std::string& id) = 0;
   virtual Result<DeviceStatus> device() = 0;
+  // The header that an unfinished job was started with.
+  virtual Result<std::string> header(const std::string& id) = 0;
 };
 
-// file:PATH or spool:DIR. Touches nothing yet. An unknown scheme is kBadInput.
-Result<std::unique_ptr<Backend>> open_backend(const std::string& uri);
+struct BackendOptions {
+  std::string state_folder;  // where jobs for devices keep their journals; its parent exists
+  std::vector<std::string> usb_models;  // "vid:pid word..." that usb: may mean, with their quirks
+  std::function<bool()> stop_asked;     // asked during waits; true ends them with kInterrupted
+};
+
+// file:PATH, spool:DIR or usb:... Touches nothing yet. An unknown scheme is kBadInput.
+Result<std::unique_ptr<Backend>> open_backend(const std::string& uri,
+                                              const BackendOptions& options = {});
 
 std::unique_ptr<Backend> make_file_backend(const std::string& path);
 std::unique_ptr<Backend> make_spool_backend(const std::string& folder);
+// A printer that speaks binderjet-1 (PROTOCOL.md). A URI that is none is kBadInput.
+Result<std::unique_ptr<Backend>> make_usb_backend(const std::string& uri,
+                                                  const BackendOptions& options);
+
+// The USB printers that are plugged in and known.
+Result<std::vector<DeviceStatus>> list_usb_devices(const BackendOptions& options);
+// Waits until the printer of a usb: URI is plugged in; false when the time is over or a stop is
+// asked for.
+bool wait_for_usb_device(const std::string& uri, const BackendOptions& options, double seconds);
 
 }  // namespace binderjet

@@ -67,6 +67,10 @@ class FileBackend : public Backend {
     return DeviceStatus{"file:" + path_, "one job file", writer_ ? "processing" : "idle"};
   }
 
+  Result<std::string> header(const std::string&) override {
+    return fault("keeps nothing of an unfinished job: print it again");
+  }
+
  private:
   tl::unexpected<Fault> fault(std::string what) const {
     return tl::unexpected(Fault{FaultKind::kBadInput, "file:" + path_, std::move(what)});

@@ -70,14 +70,19 @@ std::vector<std::string_view> split(std::string_view line) {
 bool take_line(const std::vector<std::string_view>& words, JournalState& state) {
   if (!state.started) {
     int version = 0;
-    state.started = words.size() == 5 && words[0] == "start" && parse(words[1], version) &&
-                    version == kVersion && parse(words[2], state.layer_count) &&
-                    state.layer_count >= 0 && from_word(words[3], state.name) &&
-                    from_word(words[4], state.source);
+    state.started = (words.size() == 5 || words.size() == 7) && words[0] == "start" &&
+                    parse(words[1], version) && version == kVersion &&
+                    parse(words[2], state.layer_count) && state.layer_count >= 0 &&
+                    from_word(words[3], state.name) && from_word(words[4], state.source);
+    if (words.size() == 7) {
+      state.started =
+          state.started && from_word(words[5], state.to) && parse(words[6], state.key, 16);
+    }
     return state.started;
   }
-  if (words.size() == 3 && words[0] == "ack") {
-    return parse(words[1], state.acknowledged) && parse(words[2], state.bytes);
+  if ((words.size() == 3 || words.size() == 4) && words[0] == "ack") {
+    return parse(words[1], state.acknowledged) && parse(words[2], state.bytes) &&
+           (words.size() == 3 || parse(words[3], state.digest, 16));
   }
   if (words.size() == 2 && words[0] == "held") return from_word(words[1], state.held);
   if (words.size() == 1 && words[0] == "resumed") {
@@ -133,9 +138,10 @@ Result<Journal> Journal::create(const std::string& path, const JournalState& sta
   journal.path_ = path;
   journal.state_ = start;
   journal.state_.started = true;
-  if (auto done = journal.append(fmt::format("start {} {} {} {}", kVersion, start.layer_count,
-                                             to_word(start.name), to_word(start.source)));
-      !done) {
+  std::string line = fmt::format("start {} {} {} {}", kVersion, start.layer_count,
+                                 to_word(start.name), to_word(start.source));
+  if (!start.to.empty()) line += fmt::format(" {} {:x}", to_word(start.to), start.key);
+  if (auto done = journal.append(line); !done) {
     return tl::unexpected(done.error());
   }
   return journal;
@@ -187,6 +193,16 @@ Result<void> Journal::acknowledge(int layers, std::uint64_t bytes) {
   if (done) {
     state_.acknowledged = layers;
     state_.bytes = bytes;
+  }
+  return done;
+}
+
+Result<void> Journal::acknowledge(int layers, std::uint64_t bytes, std::uint64_t digest) {
+  auto done = append(fmt::format("ack {} {} {:x}", layers, bytes, digest));
+  if (done) {
+    state_.acknowledged = layers;
+    state_.bytes = bytes;
+    state_.digest = digest;
   }
   return done;
 }

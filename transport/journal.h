@@ -1,11 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The journal of a spooled job: what was acknowledged, in lines that are only ever appended.
 //
-//   start VERSION LAYERS NAME SOURCE CHECKSUM
-//   ack LAYERS BYTES CHECKSUM       layers 0 to LAYERS - 1 are the job file's first BYTES bytes
-//   held REASON CHECKSUM
-//   resumed CHECKSUM
+//   start VERSION LAYERS NAME SOURCE [TO KEY] CHECKSUM
+//   ack LAYERS BYTES [DIGEST] CHECKSUM   layers 0 to LAYERS - 1 are the job file's first BYTES
+//   bytes held REASON CHECKSUM resumed CHECKSUM
 //
+// TO, KEY and DIGEST are there where the job went to a device: its URI, the job's number there, and
+// the digest of the acknowledged layers, both in hex.
 // Words are separated by one blank; what could break a word is written as %XX. A checksum is 16 hex
 // digits of the XXH3-64 of the line before it, seeded with the checksum of the previous line, so a
 // line that is torn, changed, lost or out of place ends what is believed.
@@ -26,8 +27,11 @@ struct JournalState {
   std::string name;
   std::string source;
   int acknowledged = 0;
-  std::uint64_t bytes = 0;  // of the job file, that the acknowledged layers take
-  std::string held;         // why, or empty
+  std::uint64_t bytes = 0;   // of the job file, that the acknowledged layers take
+  std::string held;          // why, or empty
+  std::string to;            // the device, or empty
+  std::uint64_t key = 0;     // the job's number at the device
+  std::uint64_t digest = 0;  // of the acknowledged layers
 };
 
 // A journal that this process writes. While it is open nobody else can open it: its lock, which
@@ -46,6 +50,8 @@ class Journal {
 
   // On return the line survives a loss of power; call it only after the job file's own sync.
   Result<void> acknowledge(int layers, std::uint64_t bytes);
+  // The same for a job that went to a device, which says what is acknowledged.
+  Result<void> acknowledge(int layers, std::uint64_t bytes, std::uint64_t digest);
   Result<void> held(const std::string& reason);
   Result<void> resumed();
 

@@ -35,6 +35,7 @@ class SpoolBackend : public Backend {
   Result<std::vector<JobStatus>> status() override;
   Result<void> cancel(const std::string& id) override;
   Result<DeviceStatus> device() override;
+  Result<std::string> header(const std::string& id) override;
 
  private:
   Fault fault(FaultKind kind, std::string what) const {
@@ -276,6 +277,13 @@ Result<DeviceStatus> SpoolBackend::device() {
     device.description = fmt::format("file spool, {} jobs, {:.1f} GB free", jobs->size(), free_gb);
   }
   return device;
+}
+
+Result<std::string> SpoolBackend::header(const std::string& id) {
+  if (!is_job_id(id) || !path_exists(spool_.held(id))) return tl::unexpected(unknown_job(id));
+  const Result<JobReader> job = JobReader::open(spool_.held(id) + "/job.part");
+  if (!job) return tl::unexpected(job.error());
+  return job->header();
 }
 
 }  // namespace
