@@ -28,37 +28,120 @@ void shares_of(int y, int repeat, int rows, const BoxWeights& weights,
   }
 }
 
-// A flip of some input row, in voxels, and what it adds to the sum once it is fully inside.
-struct Ramp {
-  int at;
-  std::int64_t weight;
-};
-
-// Writes one row of the result while the sum is followed from left to right.
+// Writes the rows of the result, one voxel row after the other.
 class RowBuilder {
  public:
-  RowBuilder(RunLayer& out, const BoxWeights& x, std::int64_t least)
-      : out_(out), x_(x), least_(least) {}
+  RowBuilder(const RunLayer& in, int repeat, const BoxWeights& x, std::int64_t least, RunLayer& out)
+      : in_(in), repeat_(repeat), x_(x), least_(least), out_(out) {
+    std::int64_t sum = 0;
+    for (int offset = -x.reach; offset <= x.reach; ++offset) rise_.push_back(sum += x.at(offset));
+  }
 
-  // The ramps of one row, ascending.
-  void build(const std::vector<Ramp>& ramps) {
-    sum_ = 0;
-    solid_ = false;
-    for (std::size_t i = 0; i < ramps.size();) {
-      const int begin = ramps[i].at - x_.reach;
-      int end = ramps[i].at + x_.reach + 1;
-      std::size_t next = i + 1;
-      for (; next < ramps.size() && ramps[next].at - x_.reach <= end; ++next) {
-        end = ramps[next].at + x_.reach + 1;
-      }
-      walk(begin, end, {ramps.data() + i, next - i});
-      i = next;
-    }
-    if (solid_) out_.flip(out_.width());
+  void build(const std::vector<RowShare>& shares) {
+    if (!build_edges(shares)) build_ramps(shares);
     out_.end_row();
   }
 
  private:
+  // The common case: all rows in reach have the same runs but for a slope, and the slopes of
+  // different flips do not meet. Then the sum only rises or only falls along each slope, and the
+  // flip is where it passes `least`, close to where it did in the row before.
+  bool build_edges(const std::vector<RowShare>& shares) {
+    const std::size_t flips = shares.empty() ? 0 : in_.row(shares.front().row).size();
+    rows_.clear();
+    std::int64_t full = 0;
+    for (const RowShare& share : shares) {
+      const std::span<const int> row = in_.row(share.row);
+      if (row.size() != flips) return false;
+      rows_.push_back(row.data());
+      full += share.weight * x_.total();
+    }
+    if (flips == 0 || full < least_) return flips == 0 || !overlaps(flips);
+    if (overlaps(flips)) return false;
+    guess_.resize(flips, 0);
+    for (std::size_t i = 0; i < flips; ++i) {
+      const std::int64_t needed = i % 2 == 0 ? least_ : full - least_ + 1;
+      guess_[i] = first_at_least(needed, shares, i, guess_[i]);
+    }
+    // A flip may leave the layer together with the powder around it.
+    for (const int x : guess_) out_.flip(std::clamp(x, 0, out_.width()));
+    return true;
+  }
+
+  bool overlaps(std::size_t flips) const {
+    int end = -2 * x_.reach - 1;
+    for (std::size_t i = 0; i < flips; ++i) {
+      int low = rows_.front()[i];
+      int high = low;
+      for (const int* row : rows_) {
+        low = std::min(low, row[i]);
+        high = std::max(high, row[i]);
+      }
+      if (low * repeat_ - x_.reach < end) return true;
+      end = high * repeat_ + x_.reach + 1;
+    }
+    return false;
+  }
+
+  // The sum at x of the half-lines that begin at flip `i` of each row.
+  std::int64_t half_lines(const std::vector<RowShare>& shares, std::size_t i, int x) const {
+    std::int64_t sum = 0;
+    for (std::size_t r = 0; r < rows_.size(); ++r) {
+      const int inside = x - rows_[r][i] * repeat_ + x_.reach;
+      if (inside < 0) continue;
+      const std::size_t step = std::min(static_cast<std::size_t>(inside), rise_.size() - 1);
+      sum += shares[r].weight * rise_[step];
+    }
+    return sum;
+  }
+
+  int first_at_least(std::int64_t needed, const std::vector<RowShare>& shares, std::size_t i,
+                     int guess) const {
+    // Far from the slope the sum is flat and says nothing about the way.
+    const int at = rows_.front()[i] * repeat_;
+    if (guess < at - 2 * x_.reach || guess > at + 2 * x_.reach) guess = at;
+    if (half_lines(shares, i, guess) >= needed) {
+      while (half_lines(shares, i, guess - 1) >= needed) --guess;
+      return guess;
+    }
+    do ++guess;
+    while (half_lines(shares, i, guess) < needed);
+    return guess;
+  }
+
+  // A flip of some input row, in voxels, and the weight of its row.
+  struct Ramp {
+    int at;
+    std::int64_t weight;  // negative where a run ends
+  };
+
+  // The general case: the sum is followed over all ramps from left to right.
+  void build_ramps(const std::vector<RowShare>& shares) {
+    ramps_.clear();
+    for (const RowShare& share : shares) {
+      std::int64_t sign = 1;
+      for (const int flip : in_.row(share.row)) {
+        ramps_.push_back({flip * repeat_, sign * share.weight});
+        sign = -sign;
+      }
+    }
+    std::sort(ramps_.begin(), ramps_.end(),
+              [](const Ramp& a, const Ramp& b) { return a.at < b.at; });
+    sum_ = 0;
+    solid_ = false;
+    for (std::size_t i = 0; i < ramps_.size();) {
+      const int begin = ramps_[i].at - x_.reach;
+      int end = ramps_[i].at + x_.reach + 1;
+      std::size_t next = i + 1;
+      for (; next < ramps_.size() && ramps_[next].at - x_.reach <= end; ++next) {
+        end = ramps_[next].at + x_.reach + 1;
+      }
+      walk(begin, end, {ramps_.data() + i, next - i});
+      i = next;
+    }
+    if (solid_) out_.flip(out_.width());
+  }
+
   // Follows the sum over [begin, end), which holds these ramps whole; it is constant behind.
   void walk(int begin, int end, std::span<const Ramp> ramps) {
     steps_.assign(static_cast<std::size_t>(end - begin) + 2, 0);
@@ -87,12 +170,18 @@ class RowBuilder {
     }
   }
 
-  RunLayer& out_;
+  const RunLayer& in_;
+  int repeat_;
   const BoxWeights& x_;
   std::int64_t least_;
+  RunLayer& out_;
+  std::vector<std::int64_t> rise_;  // the sum along a ramp of weight 1
+  std::vector<const int*> rows_;    // the flips of the rows in reach
+  std::vector<int> guess_;          // where the flips of the row before are
+  std::vector<Ramp> ramps_;
+  std::vector<std::int64_t> steps_;
   std::int64_t sum_ = 0;
   bool solid_ = false;
-  std::vector<std::int64_t> steps_;
 };
 
 }  // namespace
@@ -126,21 +215,11 @@ RunLayer box_threshold(const RunLayer& in, std::array<int, 2> repeat, const BoxW
   const int height = in.height() * repeat[1];
   RunLayer out(in.width() * repeat[0]);
   out.reserve(height, in.flip_count() * static_cast<std::size_t>(repeat[1]));
-  RowBuilder builder(out, x, least);
+  RowBuilder builder(in, repeat[0], x, least, out);
   std::vector<RowShare> shares;
-  std::vector<Ramp> ramps;
   for (int row = 0; row < height; ++row) {
     shares_of(row, repeat[1], in.height(), y, shares);
-    ramps.clear();
-    for (const RowShare& share : shares) {
-      std::int64_t sign = 1;
-      for (const int flip : in.row(share.row)) {
-        ramps.push_back({flip * repeat[0], sign * share.weight});
-        sign = -sign;
-      }
-    }
-    std::sort(ramps.begin(), ramps.end(), [](const Ramp& a, const Ramp& b) { return a.at < b.at; });
-    builder.build(ramps);
+    builder.build(shares);
   }
   return out;
 }

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "slicer/enhance/bit_count.h"
+#include "slicer/vector_clones.h"
 
 namespace binderjet {
 namespace {
@@ -19,26 +20,6 @@ constexpr int kColumns = 62;
 constexpr int kRows = 64;
 constexpr int kDrawnRows = kRows + 2;
 using Words = std::array<std::uint64_t, kDrawnRows>;
-
-// Columns [x, x + 64) of a row as bits, column x in the lowest.
-std::uint64_t draw(std::span<const int> row, int x) {
-  const auto next = std::upper_bound(row.begin(), row.end(), x);
-  std::uint64_t word = (next - row.begin()) % 2 == 1 ? ~std::uint64_t{0} : 0;
-  for (auto flip = next; flip != row.end() && *flip < x + 64; ++flip) {
-    word ^= ~std::uint64_t{0} << (*flip - x);
-  }
-  return word;
-}
-
-void draw(const RunLayer* layer, int x, int y, Words& words) {
-  if (layer == nullptr) {
-    words.fill(0);
-    return;
-  }
-  for (int r = 0; r < kDrawnRows; ++r) {
-    words[static_cast<std::size_t>(r)] = draw(layer->row(y + r), x);
-  }
-}
 
 // The slices of a layer and one slice below and above: [0] is below, [rz + 1] above.
 using Slab = std::vector<const RunLayer*>;
@@ -55,25 +36,65 @@ class ActiveTiles {
  public:
   explicit ActiveTiles(int width) : active_(static_cast<std::size_t>(width / kColumns) + 1) {}
 
-  void clear() { std::fill(active_.begin(), active_.end(), false); }
-  bool operator[](std::size_t tile) const { return active_[tile]; }
-  std::size_t size() const { return active_.size(); }
-
-  void mark_ends(std::span<const int> row) {
-    for (const int flip : row) mark(flip - 1, flip);
-  }
-  // Where two rows differ. Each row is the exclusive or of the half-lines from its flips, so the
-  // difference lies between flips of the same rank; what one row has more is taken as one.
-  void mark_difference(std::span<const int> a, std::span<const int> b) {
-    const std::size_t both = std::min(a.size(), b.size());
-    for (std::size_t i = 0; i < both; ++i) {
-      if (a[i] != b[i]) mark(std::min(a[i], b[i]), std::max(a[i], b[i]) - 1);
+  // The first columns of the active tiles, ascending.
+  const std::vector<int>& find(const Slab& volume, int y) {
+    std::fill(active_.begin(), active_.end(), false);
+    for (std::size_t s = 0; s < volume.size(); ++s) {
+      for (int row = y - 1; row <= y + kRows; ++row) {
+        const std::span<const int> here = row_of(volume[s], row);
+        widen(here);
+        // Rows with as many flips differ only between flips of the same rank, and those are seen
+        // to by widen; others are compared where they meet.
+        const std::span<const int> before = row_of(volume[s], row - 1);
+        if (row >= y && before.size() != here.size()) mark_difference(before, here);
+        if (s == 0) continue;
+        const std::span<const int> under = row_of(volume[s - 1], row);
+        if (under.size() != here.size()) mark_difference(under, here);
+      }
     }
-    const std::span<const int> rest = (a.size() > both ? a : b).subspan(both);
-    if (!rest.empty()) mark(rest.front(), rest.back() - 1);
+    flush();
+    tiles_.clear();
+    for (std::size_t tile = 0; tile < active_.size(); ++tile) {
+      if (active_[tile]) tiles_.push_back(static_cast<int>(tile) * kColumns);
+    }
+    return tiles_;
   }
 
  private:
+  static std::span<const int> row_of(const RunLayer* slice, int row) {
+    return slice == nullptr ? std::span<const int>() : slice->row(row);
+  }
+
+  // Rows with the same number of flips share one range per rank.
+  void widen(std::span<const int> row) {
+    if (row.size() != low_.size()) {
+      flush();
+      low_.assign(row.begin(), row.end());
+      high_ = low_;
+      return;
+    }
+    for (std::size_t i = 0; i < row.size(); ++i) {
+      low_[i] = std::min(low_[i], row[i]);
+      high_[i] = std::max(high_[i], row[i]);
+    }
+  }
+  void flush() {
+    for (std::size_t i = 0; i < low_.size(); ++i) mark(low_[i] - 1, high_[i]);
+    low_.clear();
+    high_.clear();
+  }
+
+  // Each row is the exclusive or of the half-lines from its flips, so two rows differ only between
+  // flips of the same rank; what one row has more is taken as one.
+  void mark_difference(std::span<const int> a, std::span<const int> b) {
+    const std::size_t both = std::min(a.size(), b.size());
+    for (std::size_t i = 0; i < both; ++i) {
+      if (a[i] != b[i]) mark(std::min(a[i], b[i]) - 1, std::max(a[i], b[i]));
+    }
+    const std::span<const int> rest = (a.size() > both ? a : b).subspan(both);
+    if (!rest.empty()) mark(rest.front() - 1, rest.back());
+  }
+
   void mark(int first, int last) {
     const int last_tile = std::min(last / kColumns, static_cast<int>(active_.size()) - 1);
     for (int tile = std::max(first, 0) / kColumns; tile <= last_tile; ++tile) {
@@ -82,6 +103,39 @@ class ActiveTiles {
   }
 
   std::vector<char> active_;
+  std::vector<int> tiles_;
+  std::vector<int> low_;  // per rank, over the rows of the same number of flips
+  std::vector<int> high_;
+};
+
+// One layer's bits under the tiles of a band, each tile's words begin one column left of it.
+class DrawnBand {
+ public:
+  const Words& operator[](std::size_t tile) const { return words_[tile]; }
+
+  // Rows y to y + kDrawnRows - 1; outside the layer, and for no layer, all is powder.
+  void draw(const RunLayer* layer, const std::vector<int>& tiles, int y) {
+    words_.resize(tiles.size());
+    for (Words& words : words_) words.fill(0);
+    if (layer == nullptr) return;
+    const int last = std::min(kDrawnRows, layer->height() - y);
+    for (int r = std::max(0, -y); r < last; ++r) {
+      const std::span<const int> row = layer->row(y + r);
+      std::size_t next = 0;  // the first flip right of the tile's first column
+      for (std::size_t tile = 0; tile < tiles.size() && !row.empty(); ++tile) {
+        const int x = tiles[tile] - 1;
+        while (next < row.size() && row[next] <= x) ++next;
+        std::uint64_t word = next % 2 == 1 ? ~std::uint64_t{0} : 0;
+        for (std::size_t i = next; i < row.size() && row[i] < x + 64; ++i) {
+          word ^= ~std::uint64_t{0} << (row[i] - x);
+        }
+        words_[tile][static_cast<std::size_t>(r)] = word;
+      }
+    }
+  }
+
+ private:
+  std::vector<Words> words_;
 };
 
 // Sums over 3 x 3 voxels of one slice, for the rows of a tile, as numbers of four bit planes.
@@ -89,7 +143,7 @@ struct Sums {
   std::array<std::array<std::uint64_t, kRows>, 4> plane;
 };
 
-void sum_3x3(const Words& words, Sums& sums) {
+BINDERJET_VECTOR_CLONES void sum_3x3(const Words& words, Sums& sums) {
   for (std::size_t r = 0; r < kRows; ++r) {
     const auto above = bits::add_neighbors(words[r]);
     const auto middle = bits::add_neighbors(words[r + 1]);
@@ -102,7 +156,7 @@ void sum_3x3(const Words& words, Sums& sums) {
 using Toggles = std::array<std::uint64_t, kRows>;
 
 // What the rule changes in one slice of a tile.
-void apply_rule(const std::array<const Sums*, 3>& printed, const std::array<const Sums*, 3>& target,
+BINDERJET_VECTOR_CLONES void apply_rule(const std::array<const Sums*, 3>& printed, const std::array<const Sums*, 3>& target,
                 const Words& below, const Words& volume, const Words& above, std::uint64_t columns,
                 Toggles& toggles) {
   const auto number = [](const Sums& sums, std::size_t r) {
@@ -127,7 +181,7 @@ void apply_rule(const std::array<const Sums*, 3>& printed, const std::array<cons
   }
 }
 
-// One layer's tiles: draws them, applies the rule, and keeps what it changes.
+// One layer under the rule, band by band.
 class LayerRule {
  public:
   LayerRule(const PassLayer* below, const PassLayer& layer, const PassLayer* above)
@@ -141,7 +195,8 @@ class LayerRule {
         width_(layer.printed.width()),
         height_(layer.printed.height()),
         active_(width_),
-        drawn_(volume_.size()),
+        volume_bits_(volume_.size()),
+        target_bits_(target_.size()),
         target_sums_(target_.size()) {}
 
   VoxelLayer run() {
@@ -163,68 +218,53 @@ class LayerRule {
 
  private:
   void run_band(int y) {
-    mark_active(y);
-    tiles_.clear();
-    toggles_.clear();
-    for (std::size_t tile = 0; tile < active_.size(); ++tile) {
-      if (!active_[tile]) continue;
-      tiles_.push_back(static_cast<int>(tile) * kColumns);
-      run_tile(tiles_.back(), y);
+    tiles_ = &active_.find(volume_, y);
+    for (std::size_t s = 0; s < volume_.size(); ++s) {
+      volume_bits_[s].draw(volume_[s], *tiles_, y - 1);
+      // In the first pass the volume is the target.
+      if (target_[s] != volume_[s]) target_bits_[s].draw(target_[s], *tiles_, y - 1);
     }
+    for (std::size_t k = 0; k < 3; ++k) printed_bits_[k].draw(printed_[k], *tiles_, y - 1);
+    toggles_.resize(tiles_->size() * rz_);
+    changed_.assign(rz_ * kRows, 0);
+    for (std::size_t tile = 0; tile < tiles_->size(); ++tile) run_tile(tile);
   }
 
-  void mark_active(int y) {
-    active_.clear();
-    const auto row_of = [](const RunLayer* slice, int row) {
-      return slice == nullptr ? std::span<const int>() : slice->row(row);
-    };
-    for (int row = y; row < std::min(height_, y + kRows); ++row) {
-      for (std::size_t s = 1; s <= rz_; ++s) {
-        const std::span<const int> v = volume_[s]->row(row);
-        active_.mark_ends(v);
-        active_.mark_difference(v, volume_[s]->row(row - 1));
-        active_.mark_difference(v, volume_[s]->row(row + 1));
-        active_.mark_difference(v, row_of(volume_[s - 1], row));
-        active_.mark_difference(v, row_of(volume_[s + 1], row));
-      }
-    }
-  }
-
-  // The tile of columns [x, x + kColumns) and rows [y, y + kRows); its words begin at x - 1.
-  void run_tile(int x, int y) {
-    for (std::size_t s = 0; s < volume_.size(); ++s) draw(volume_[s], x - 1, y - 1, drawn_[s]);
-    Words words;
+  void run_tile(std::size_t tile) {
     for (std::size_t s = 0; s < target_.size(); ++s) {
-      draw(target_[s], x - 1, y - 1, words);
-      sum_3x3(words, target_sums_[s]);
+      const DrawnBand& bits = target_[s] == volume_[s] ? volume_bits_[s] : target_bits_[s];
+      sum_3x3(bits[tile], target_sums_[s]);
     }
-    for (std::size_t k = 0; k < 3; ++k) {
-      draw(printed_[k], x - 1, y - 1, words);
-      sum_3x3(words, printed_sums_[k]);
-    }
-    const int columns = std::min(kColumns, width_ - x);
+    for (std::size_t k = 0; k < 3; ++k) sum_3x3(printed_bits_[k][tile], printed_sums_[k]);
+    const int columns = std::min(kColumns, width_ - (*tiles_)[tile]);
     const std::uint64_t core = columns <= 0 ? 0 : (~std::uint64_t{0} >> (64 - columns)) << 1;
     for (std::size_t s = 1; s <= rz_; ++s) {
       // All slices of a layer print alike; only the outermost see another layer.
       const std::array<const Sums*, 3> printed = {&printed_sums_[s == 1 ? 0 : 1], &printed_sums_[1],
                                                   &printed_sums_[s == rz_ ? 2 : 1]};
-      toggles_.emplace_back();
+      Toggles& toggles = toggles_[tile * rz_ + s - 1];
       apply_rule(printed, {&target_sums_[s - 1], &target_sums_[s], &target_sums_[s + 1]},
-                 drawn_[s - 1], drawn_[s], drawn_[s + 1], core, toggles_.back());
+                 volume_bits_[s - 1][tile], volume_bits_[s][tile], volume_bits_[s + 1][tile], core,
+                 toggles);
+      for (std::size_t r = 0; r < kRows; ++r) changed_[(s - 1) * kRows + r] |= toggles[r];
     }
   }
 
   // Row `row` of V with its changes: the exclusive or of two ascending lists of flips.
   void append_toggled(std::size_t s, int row, std::size_t r, RunLayer& out) const {
     const std::span<const int> flips = volume_[s + 1]->row(row);
+    if (changed_[s * kRows + r] == 0) {
+      out.append_row(flips);
+      return;
+    }
     std::size_t next = 0;
     const auto flip = [&](int x) {
       while (next < flips.size() && flips[next] <= x) out.flip(flips[next++]);
       out.flip(x);
     };
-    for (std::size_t tile = 0; tile < tiles_.size(); ++tile) {
+    for (std::size_t tile = 0; tile < tiles_->size(); ++tile) {
       std::uint64_t word = toggles_[tile * rz_ + s][r];
-      const int x = tiles_[tile] - 1;
+      const int x = (*tiles_)[tile] - 1;
       while (word != 0) {
         const int first = std::countr_zero(word);
         const int length = std::countr_one(word >> first);
@@ -244,11 +284,14 @@ class LayerRule {
   int width_;
   int height_;
   ActiveTiles active_;
-  std::vector<int> tiles_;        // where the active tiles of the band begin
-  std::vector<Toggles> toggles_;  // of each active tile, its rz slices
-  std::vector<Words> drawn_;
+  const std::vector<int>* tiles_ = nullptr;  // the first columns of the band's active tiles
+  std::vector<DrawnBand> volume_bits_;
+  std::vector<DrawnBand> target_bits_;
+  std::array<DrawnBand, 3> printed_bits_;
   std::vector<Sums> target_sums_;
   std::array<Sums, 3> printed_sums_;
+  std::vector<Toggles> toggles_;        // of each active tile, its rz slices
+  std::vector<std::uint64_t> changed_;  // of each slice and row, whether any tile toggles
 };
 
 }  // namespace

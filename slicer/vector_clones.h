@@ -1,0 +1,12 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Hot loops compiled once more for wider vectors; the program picks at start what the machine has.
+#pragma once
+
+// Before a function whose loops the compiler vectorises. Sums are integers, so every clone gives
+// the same bits.
+#if defined(__x86_64__) && defined(__GNUC__) && !defined(__clang__) && \
+    !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__)
+#define BINDERJET_VECTOR_CLONES __attribute__((target_clones("avx2", "default")))
+#else
+#define BINDERJET_VECTOR_CLONES
+#endif
