@@ -76,8 +76,10 @@ void catch_interrupts() {
   std::signal(SIGTERM, on_signal);
 }
 
+bool interrupted() { return caught_signal != 0; }
+
 void check_interrupt() {
-  if (caught_signal != 0) {
+  if (interrupted()) {
     throw Error(ErrorKind::kInterrupted, "", "interrupted; nothing was left half-written");
   }
 }

@@ -47,6 +47,8 @@ class Progress {
 
 // From here on Ctrl-C and SIGTERM are answered by check_interrupt() instead of by sudden death.
 void catch_interrupts();
+// Whether a signal came.
+bool interrupted();
 // Throws Error{kInterrupted} if a signal came.
 void check_interrupt();
 

@@ -11,6 +11,7 @@
 
 #include "driver/files.h"
 #include "slicer/error.h"
+#include "transport/usb_quirks.h"
 
 namespace binderjet {
 namespace {
@@ -135,6 +136,11 @@ void parse_device(Table table, Profile& profile) {
   for (const toml::node& one : *list) {
     if (!one.is_string()) table.fail(one.source(), "usb must be a list of \"vid:pid\"");
     profile.usb.push_back(one.value_or(std::string()));
+    if (!parse_usb_model_words(profile.usb.back())) {
+      table.fail(one.source(),
+                 "usb needs \"vid:pid\" in hexadecimal, then quirks if any: "
+                 "device-id-little-endian, no-device-id, soft-reset-1.0");
+    }
   }
   table.no_other_keys();
 }

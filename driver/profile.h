@@ -30,7 +30,7 @@ struct Profile {
   // where [binder] does not say better.
   double binder_per_powder = 0.36;
   std::string protocol;
-  std::vector<std::string> usb;  // "vid:pid"
+  std::vector<std::string> usb;  // "vid:pid", then words of transport/usb_quirks.h
 
   // The grid with the default layer or the one asked for; Error{kUsage} if the printer has no such.
   Grid grid(std::optional<double> layer) const;

@@ -19,6 +19,7 @@ struct Options {
   std::string id;
   std::string to;
   std::string job;
+  double wait_s = 0;
 };
 
 nlohmann::ordered_json to_json(const JobStatus& job) {
@@ -89,15 +90,26 @@ void resume(const Console& console, const Options& options) {
         ErrorKind::kBadInput, options.to,
         fmt::format("job {} does not say which file it came from: name it with --job", options.id));
   }
-  send_job(console, source, options.to, options.id);
+  if (options.wait_s > 0 && options.to.starts_with("usb:") &&
+      !wait_for_usb_device(options.to, backend_options(), options.wait_s)) {
+    check_interrupt();
+    throw Error(ErrorKind::kDevice, options.to,
+                fmt::format("no such printer was plugged in within {} s", options.wait_s));
+  }
+  resume_job(console, options.id, source, options.to);
 }
 
 void devices(const Console& console, const Options& options) {
+  std::vector<DeviceStatus> found;
+  if (options.to.empty()) {
+    found = value_or_throw(list_usb_devices(backend_options()));
+  } else {
+    found.push_back(value_or_throw(backend_at(options.to)->device()));
+  }
   nlohmann::ordered_json result;
   result["devices"] = nlohmann::ordered_json::array();
   std::vector<std::string> text;
-  if (!options.to.empty()) {
-    const DeviceStatus device = value_or_throw(backend_at(options.to)->device());
+  for (const DeviceStatus& device : found) {
     nlohmann::ordered_json object;
     object["uri"] = device.uri;
     object["description"] = device.description;
@@ -105,8 +117,8 @@ void devices(const Console& console, const Options& options) {
     result["devices"].push_back(std::move(object));
     text.push_back(fmt::format("{}  {}  {}", device.uri, device.state, device.description));
   }
-  console.result(result,
-                 text.empty() ? "no devices; --to spool:DIR looks at a spool" : lines(text));
+  console.result(
+      result, text.empty() ? "no USB printer is connected; --to looks at one place" : lines(text));
 }
 
 using Run = void (*)(const Console&, const Options&);
@@ -122,7 +134,7 @@ CLI::App* add_verb(CLI::App& program, const char* name, const char* help, Run ru
 }  // namespace
 
 void add_queue_verbs(CLI::App& program) {
-  const char* to_help = "which spool: spool:DIR";
+  const char* to_help = "where: usb:, usb://VID:PID/SERIAL or spool:DIR";
   auto options = std::make_shared<Options>();
   CLI::App* verb = add_verb(program, "status", "list the jobs, or say how one is", status, options);
   verb->add_option("JOBID", options->id, "the job; without it: all");
@@ -138,7 +150,10 @@ void add_queue_verbs(CLI::App& program) {
                   resume, options);
   verb->add_option("JOBID", options->id, "the job")->required();
   verb->add_option("--to", options->to, to_help)->required();
-  verb->add_option("--job", options->job, "its job file, if that has moved");
+  verb->add_option("--job", options->job, "its job file or part, if that has moved");
+  verb->add_option("--wait", options->wait_s,
+                   "wait so many seconds for the printer to be plugged in")
+      ->check(CLI::NonNegativeNumber);
 
   options = std::make_shared<Options>();
   verb = add_verb(program, "devices", "list what can print", devices, options);

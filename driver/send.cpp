@@ -1,14 +1,20 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A job file's layers, read and checked one after the other, go to a backend.
+// Layers go to a backend one after the other, whether they are read from a job or computed.
 #include "driver/send.h"
 
 #include <fmt/core.h>
 
+#include <array>
 #include <chrono>
+#include <cstdlib>
 #include <filesystem>
+#include <fstream>
+#include <functional>
+#include <thread>
 #include <utility>
 #include <vector>
 
+#include "driver/layer_queue.h"
 #include "driver/result.h"
 #include "driver/sent_job.h"
 #include "slicer/error.h"
@@ -40,39 +46,76 @@ std::string how_to_resume(Backend& backend, const std::string& id, const std::st
   return "";
 }
 
-}  // namespace
+// The layers of a job in order; each is asked for once.
+class LayerSource {
+ public:
+  virtual ~LayerSource() = default;
+  virtual std::vector<std::byte> next(int layer) = 0;
+};
+// Opens the source at the first layer to send.
+using OpenSource = std::function<std::unique_ptr<LayerSource>(int first)>;
 
-std::unique_ptr<Backend> backend_at(const std::string& uri) {
-  Result<std::unique_ptr<Backend>> backend = open_backend(uri);
-  if (!backend) throw Error(ErrorKind::kUsage, backend.error().where, backend.error().what);
-  return std::move(*backend);
-}
+class FileLayers : public LayerSource {
+ public:
+  explicit FileLayers(const JobReader& job) : job_(job) {}
+  std::vector<std::byte> next(int layer) override { return records_of_layer(job_, layer); }
 
-void send_job(const Console& console, const std::string& job_path, const std::string& uri,
-              const std::optional<std::string>& resumed) {
+ private:
+  const JobReader& job_;
+};
+
+// At most four layers are computed and not yet taken: two in the queue, and a block of two.
+constexpr int kStreamBlock = 2;
+constexpr std::size_t kQueuedLayers = 2;
+
+class ComputedLayers : public LayerSource {
+ public:
+  ComputedLayers(const JobHeader& header, std::shared_ptr<const Mesh> mesh, int first)
+      : queue_(kQueuedLayers),
+        thread_([this, header, mesh = std::move(mesh), first] { compute(header, mesh, first); }) {}
+  ~ComputedLayers() override {
+    queue_.close();
+    thread_.join();
+  }
+  std::vector<std::byte> next(int) override { return queue_.pop(); }
+
+ private:
+  void compute(const JobHeader& header, const std::shared_ptr<const Mesh>& mesh, int first) {
+    try {
+      const auto stream = encoded_layers(header, mesh, {first, header.layers()});
+      while (stream->rest().size() > 0) {
+        for (const Shared<EncodedLayer>& layer : stream->next(kStreamBlock)) {
+          if (!queue_.push(layer->record)) return;
+        }
+      }
+    } catch (...) {
+      queue_.fail(std::current_exception());
+    }
+  }
+
+  LayerQueue queue_;
+  std::thread thread_;
+};
+
+void send_layers(const Console& console, const std::string& uri, const JobTicket& ticket,
+                 const std::string& resumed, const OpenSource& open) {
   const auto start_time = std::chrono::steady_clock::now();
-  const JobReader job = open_whole_job(job_path);
-  JobTicket ticket;
-  ticket.header = job.header();
-  ticket.layer_count = job_layer_count(job);
-  ticket.name = fs::path(job_path).filename().string();
-  ticket.source = fs::absolute(job_path).lexically_normal().string();
-
   std::unique_ptr<Backend> backend = backend_at(uri);
-  std::string id;
+  std::string id = resumed;
   std::uint64_t bytes = 0;
   int first = 0;
   try {
-    if (resumed) {
-      id = *resumed;
-      first = value_or_throw(backend->resume(id, ticket));
-    } else {
+    if (resumed.empty()) {
       id = value_or_throw(backend->start(ticket));
+    } else {
+      first = value_or_throw(backend->resume(id, ticket));
     }
     Progress progress(console, "printing", ticket.layer_count);
+    // Nothing is computed where nothing is left to send.
+    const auto source = first < ticket.layer_count ? open(first) : nullptr;
     for (int layer = first; layer < ticket.layer_count; ++layer) {
       progress.advance(layer);
-      const std::vector<std::byte> records = records_of_layer(job, layer);
+      const std::vector<std::byte> records = source->next(layer);
       value_or_throw(backend->send(layer, records));
       bytes += records.size();
     }
@@ -95,6 +138,97 @@ void send_job(const Console& console, const std::string& job_path, const std::st
   console.result(result,
                  fmt::format("job {}: layers {} to {} of {} sent to {} in {:.1f} s", id, first,
                              ticket.layer_count - 1, ticket.layer_count, uri, seconds));
+}
+
+std::string absolute_path(const std::string& path) {
+  return fs::absolute(path).lexically_normal().string();
+}
+
+void send_file(const Console& console, const std::string& job_path, const std::string& uri,
+               const std::string& resumed) {
+  const JobReader job = open_whole_job(job_path);
+  const JobTicket ticket{job.header(), job_layer_count(job), fs::path(job_path).filename().string(),
+                         absolute_path(job_path)};
+  send_layers(console, uri, ticket, resumed,
+              [&job](int) { return std::make_unique<FileLayers>(job); });
+}
+
+std::string state_folder() {
+  // BINDERJET_STATE is for tests and for systems that keep such things elsewhere.
+  for (const auto& [variable, behind] :
+       {std::pair("BINDERJET_STATE", ""), std::pair("XDG_STATE_HOME", "/binderjet"),
+        std::pair("HOME", "/.local/state/binderjet")}) {
+    const char* value = std::getenv(variable);
+    if (value == nullptr || *value == '\0') continue;
+    const std::string folder = value + std::string(behind);
+    std::error_code error;
+    fs::create_directories(folder, error);
+    return folder + "/usb";
+  }
+  throw Error(ErrorKind::kUsage, "HOME", "is not set; set it, or BINDERJET_STATE to a folder");
+}
+
+// A profile that is wrong is not for this verb to complain about.
+std::vector<std::string> usb_models() {
+  std::vector<std::string> models;
+  for (const std::string& folder : profile_folders()) {
+    std::error_code error;
+    for (const auto& entry : fs::directory_iterator(folder, error)) {
+      if (entry.path().extension() != ".toml") continue;
+      try {
+        const std::vector<std::string> usb = load_profile(entry.path().string()).usb;
+        models.insert(models.end(), usb.begin(), usb.end());
+      } catch (const Error&) {
+      }
+    }
+  }
+  return models;
+}
+
+}  // namespace
+
+BackendOptions backend_options() {
+  return {state_folder(), usb_models(), [] { return interrupted(); }};
+}
+
+std::unique_ptr<Backend> backend_at(const std::string& uri) {
+  const BackendOptions options = uri.starts_with("usb:") ? backend_options() : BackendOptions{};
+  Result<std::unique_ptr<Backend>> backend = open_backend(uri, options);
+  if (!backend) throw Error(ErrorKind::kUsage, backend.error().where, backend.error().what);
+  return std::move(*backend);
+}
+
+bool is_job_file(const std::string& path) {
+  std::array<char, 4> magic{};
+  std::ifstream(path, std::ios::binary).read(magic.data(), magic.size());
+  return std::string_view(magic.data(), magic.size()) == "BJOB" ||
+         fs::path(path).extension() == ".bjob";
+}
+
+void send_job(const Console& console, const std::string& job_path, const std::string& uri) {
+  send_file(console, job_path, uri, "");
+}
+
+void send_parts(const Console& console, const SliceOptions& options, const std::string& uri) {
+  const SlicePlan plan = plan_slices(options, console);
+  const std::string& part = options.parts.front();
+  const JobTicket ticket{to_text(plan.header), plan.header.layers(),
+                         fs::path(part).filename().string(), absolute_path(part)};
+  send_layers(console, uri, ticket, "", [&plan](int first) {
+    return std::make_unique<ComputedLayers>(plan.header, plan.mesh, first);
+  });
+}
+
+void resume_job(const Console& console, const std::string& id, const std::string& source,
+                const std::string& uri) {
+  if (is_job_file(source)) return send_file(console, source, uri, id);
+  const std::string text = value_or_throw(backend_at(uri)->header(id));
+  const JobHeader header = parse_job_header(text, "job " + id);
+  const JobTicket ticket{text, header.layers(), fs::path(source).filename().string(), source};
+  send_layers(console, uri, ticket, id, [&](int first) {
+    return std::make_unique<ComputedLayers>(
+        header, reload_parts(header, fs::path(source).parent_path().string()), first);
+  });
 }
 
 }  // namespace binderjet

@@ -13,6 +13,7 @@
 #include "driver/estimate.h"
 #include "driver/job.h"
 #include "driver/result.h"
+#include "driver/slice.h"
 #include "driver/verbs.h"
 #include "slicer/effects/model.h"
 #include "slicer/masks.h"
@@ -20,19 +21,6 @@
 
 namespace binderjet {
 namespace {
-
-struct SliceOptions {
-  std::vector<std::string> parts;
-  std::string profile;
-  std::string out;
-  std::string enhance = "none";
-  int passes = 2;
-  std::optional<double> layer_mm;
-  std::string units;
-  Placement placement;
-  std::vector<std::string> at;
-  std::string layers;
-};
 
 // "A:B" as numbers; either may be empty.
 template <class Number>
@@ -118,32 +106,14 @@ EncodedLayer encode(int layer, const MaskLayer& masks) {
 
 void slice(const SliceOptions& options, const Console& console) {
   const auto start = std::chrono::steady_clock::now();
-  JobHeader header;
-  header.profile = load_profile(options.profile);
-  header.grid = header.profile.grid(options.layer_mm);
-  header.enhance = options.enhance;
-  header.passes = options.enhance == "paper" ? options.passes : 0;
-  std::vector<Part> parts = load_parts(options, header);
-  std::vector<std::string> warnings;
-  for (const Part& part : parts) {
-    header.sources.push_back(part.source);
-    warnings.insert(warnings.end(), part.warnings.begin(), part.warnings.end());
-  }
-  for (const std::string& warning : warnings) console.warning(warning);
-
-  const auto mesh = std::make_shared<const Mesh>(merge_parts(std::move(parts), header.grid));
-  header.box = job_box(bounding_box(*mesh), header.grid, lower_corner(header.sources),
-                       PrinterModel(header.profile.effects, header.grid).reach().xy_vx);
-  const LayerRange range = layer_range(options.layers, header.layers());
-
-  JobWriter writer = value_or_throw(JobWriter::create(options.out, to_text(header)));
+  const SlicePlan plan = plan_slices(options, console);
+  const LayerRange range = layer_range(options.layers, plan.header.layers());
+  JobWriter writer = value_or_throw(JobWriter::create(options.out, to_text(plan.header)));
   Progress progress(console, "slicing", range.size());
-  using Encode = Step<MaskLayer, EncodedLayer>;
-  Encode stream(mask_stream(header, mesh, range), range, 0, header.layers(),
-                [](int layer, Encode::Window window) { return encode(layer, *window[0]); });
+  const auto stream = encoded_layers(plan.header, plan.mesh, range);
   Totals totals;
-  while (stream.rest().size() > 0) {
-    for (const Shared<EncodedLayer>& layer : stream.next(kBlockLayers)) {
+  while (stream->rest().size() > 0) {
+    for (const Shared<EncodedLayer>& layer : stream->next(kBlockLayers)) {
       value_or_throw(writer.append(layer->record));
       totals.add(*layer);
     }
@@ -151,10 +121,59 @@ void slice(const SliceOptions& options, const Console& console) {
   }
   value_or_throw(writer.finish());
   totals.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-  report(header, totals, options.out, warnings, console);
+  report(plan.header, totals, options.out, plan.warnings, console);
 }
 
 }  // namespace
+
+SlicePlan plan_slices(const SliceOptions& options, const Console& console) {
+  SlicePlan plan;
+  JobHeader& header = plan.header;
+  header.profile = load_profile(options.profile);
+  header.grid = header.profile.grid(options.layer_mm);
+  header.enhance = options.enhance;
+  header.passes = options.enhance == "paper" ? options.passes : 0;
+  std::vector<Part> parts = load_parts(options, header);
+  for (const Part& part : parts) {
+    header.sources.push_back(part.source);
+    plan.warnings.insert(plan.warnings.end(), part.warnings.begin(), part.warnings.end());
+  }
+  for (const std::string& warning : plan.warnings) console.warning(warning);
+  plan.mesh = std::make_shared<const Mesh>(merge_parts(std::move(parts), header.grid));
+  header.box = job_box(bounding_box(*plan.mesh), header.grid, lower_corner(header.sources),
+                       PrinterModel(header.profile.effects, header.grid).reach().xy_vx);
+  return plan;
+}
+
+std::unique_ptr<Stream<EncodedLayer>> encoded_layers(const JobHeader& header,
+                                                     std::shared_ptr<const Mesh> mesh,
+                                                     LayerRange layers) {
+  using Encode = Step<MaskLayer, EncodedLayer>;
+  return std::make_unique<Encode>(
+      mask_stream(header, std::move(mesh), layers), layers, 0, header.layers(),
+      [](int layer, Encode::Window window) { return encode(layer, *window[0]); });
+}
+
+void add_slice_options(CLI::App& verb, SliceOptions& options) {
+  verb.add_option("--enhance", options.enhance, "how masks answer the printer's blur")
+      ->check(CLI::IsMember({"none", "paper"}))
+      ->capture_default_str();
+  verb.add_option("--passes", options.passes, "passes of the paper's rule")
+      ->check(CLI::Range(1, 16))
+      ->capture_default_str();
+  verb.add_option("--layer", options.layer_mm, "layer height in mm, one the printer has");
+  verb.add_option("--scale", options.placement.scale, "scale factor")
+      ->check(CLI::PositiveNumber)
+      ->capture_default_str();
+  verb.add_option("--units", options.units,
+                  "the model's unit: mm, cm, m, um, in, ft (default: what the file says, else mm)");
+  verb.add_option("--rotate", options.placement.rotate_deg,
+                  "turn about x, then y, then z, in degrees")
+      ->delimiter(',');
+  verb.add_option("--at", options.at,
+                  "X,Y in mm: the part's lower corner on the bed; once per part")
+      ->allow_extra_args(false);
+}
 
 void add_slice_verb(CLI::App& program) {
   CLI::App* verb = program.add_subcommand("slice", "turn models into a printable job");
@@ -164,25 +183,7 @@ void add_slice_verb(CLI::App& program) {
   verb->add_option("-p,--profile", options->profile, "a printer profile's name or path")
       ->required();
   verb->add_option("-o,--output", options->out, "the job to write (.bjob)")->required();
-  verb->add_option("--enhance", options->enhance, "how masks answer the printer's blur")
-      ->check(CLI::IsMember({"none", "paper"}))
-      ->capture_default_str();
-  verb->add_option("--passes", options->passes, "passes of the paper's rule")
-      ->check(CLI::Range(1, 16))
-      ->capture_default_str();
-  verb->add_option("--layer", options->layer_mm, "layer height in mm, one the printer has");
-  verb->add_option("--scale", options->placement.scale, "scale factor")
-      ->check(CLI::PositiveNumber)
-      ->capture_default_str();
-  verb->add_option(
-      "--units", options->units,
-      "the model's unit: mm, cm, m, um, in, ft (default: what the file says, else mm)");
-  verb->add_option("--rotate", options->placement.rotate_deg,
-                   "turn about x, then y, then z, in degrees")
-      ->delimiter(',');
-  verb->add_option("--at", options->at,
-                   "X,Y in mm: the part's lower corner on the bed; once per part")
-      ->allow_extra_args(false);
+  add_slice_options(*verb, *options);
   verb->add_option("--layers", options->layers, "A:B, slice only layers A <= k < B (see join)");
   verb->callback([options, console = add_console_options(*verb)] { slice(*options, *console); });
 }

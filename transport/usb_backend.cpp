@@ -33,16 +33,7 @@ constexpr auto kCancelLimit = std::chrono::milliseconds(800);
 std::vector<UsbModel> models_of(const BackendOptions& options) {
   std::vector<UsbModel> models = known_usb_models();
   for (const std::string& text : options.usb_models) {
-    std::string_view rest = text;
-    std::size_t blank = std::min(rest.find(' '), rest.size());
-    std::optional<UsbModel> model = parse_usb_model(rest.substr(0, blank));
-    if (!model) continue;
-    while (blank < rest.size()) {
-      rest = rest.substr(blank + 1);
-      blank = std::min(rest.find(' '), rest.size());
-      static_cast<void>(set_usb_quirk(rest.substr(0, blank), model->quirks));
-    }
-    models.push_back(*model);
+    if (const auto model = parse_usb_model_words(text)) models.push_back(*model);
   }
   return models;
 }

@@ -52,6 +52,17 @@ std::optional<UsbModel> parse_usb_model(std::string_view text) {
   return UsbModel{*vendor, *product, {}};
 }
 
+std::optional<UsbModel> parse_usb_model_words(std::string_view text) {
+  std::size_t blank = std::min(text.find(' '), text.size());
+  std::optional<UsbModel> model = parse_usb_model(text.substr(0, blank));
+  while (model && blank < text.size()) {
+    text.remove_prefix(blank + 1);
+    blank = std::min(text.find(' '), text.size());
+    if (!set_usb_quirk(text.substr(0, blank), model->quirks)) return std::nullopt;
+  }
+  return model;
+}
+
 bool set_usb_quirk(std::string_view word, UsbQuirks& quirks) {
   if (word == "device-id-little-endian") return quirks.device_id_little_endian = true;
   if (word == "no-device-id") return quirks.no_device_id = true;

@@ -31,6 +31,8 @@ const std::vector<UsbModel>& known_usb_models();
 
 // "1209:0001"; nothing if it is not that.
 std::optional<UsbModel> parse_usb_model(std::string_view text);
+// The same with quirks behind it: "1209:0001 no-device-id soft-reset-1.0".
+std::optional<UsbModel> parse_usb_model_words(std::string_view text);
 // Sets the quirk of this word; false if there is none.
 bool set_usb_quirk(std::string_view word, UsbQuirks& quirks);
 

@@ -55,6 +55,7 @@ constexpr std::pair<F, const char*> kWords[] = {
     {F::kSwappedDeviceId, "swapped-device-id"},
     {F::kResetClass10, "reset-class-1.0"},
     {F::kPortStatus, "port-status"},
+    {F::kHangControl, "hang-control"},
     {F::kForgetsJob, "forgets-job"},
 };
 

@@ -57,6 +57,11 @@ std::vector<std::byte> PrinterEmulator::device_id() {
 UsbReply PrinterEmulator::control(const ControlSetup& setup, std::span<const std::byte>) {
   const std::lock_guard lock(mutex_);
   if (gone_) return {UsbOutcome::kGone, {}};
+  if (std::any_of(plan_.begin(), plan_.end(), [](const PlannedFault& fault) {
+        return fault.what == PrinterFault::kHangControl && fault.times != 0;
+      })) {
+    return {UsbOutcome::kNak, {}};
+  }
   UsbReply reply;
   switch (setup.request_type << 8 | setup.request) {
     case 0xa100:  // GET_DEVICE_ID
@@ -158,6 +163,18 @@ void PrinterEmulator::set_plan(FaultPlan plan) {
 std::vector<EmulatedJob> PrinterEmulator::jobs() const {
   const std::lock_guard lock(mutex_);
   return jobs_;
+}
+
+void PrinterEmulator::add_fault(PlannedFault fault) {
+  const std::lock_guard lock(mutex_);
+  plan_.push_back(fault);
+}
+
+bool PrinterEmulator::wait_for_layers(int layers, std::size_t job) {
+  std::unique_lock lock(mutex_);
+  return printed_.wait_for(lock, std::chrono::seconds(20), [&] {
+    return jobs_.size() >= job && static_cast<int>(jobs_[job - 1].layers.size()) >= layers;
+  });
 }
 
 int PrinterEmulator::acknowledged() const {

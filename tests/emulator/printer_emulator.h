@@ -4,6 +4,7 @@
 #pragma once
 
 #include <chrono>
+#include <condition_variable>
 #include <cstdint>
 #include <deque>
 #include <functional>
@@ -58,6 +59,10 @@ class PrinterEmulator : public UsbDevice {
   void refill();  // powder, binder, the cover closed
   void heal();    // all of it, and the rest of the plan is dropped
   void set_plan(FaultPlan plan);
+  void add_fault(PlannedFault fault);
+
+  // Waits until job number `job` (the first is 1) has so many acknowledged layers; false after 20 s.
+  bool wait_for_layers(int layers, std::size_t job = 1);
 
   // The evidence.
   std::vector<EmulatedJob> jobs() const;  // done ones and the held one, oldest first
@@ -105,6 +110,7 @@ class PrinterEmulator : public UsbDevice {
   std::vector<std::byte> device_id();
 
   mutable std::mutex mutex_;
+  std::condition_variable printed_;
   EmulatorOptions options_;
   FaultPlan plan_;
 

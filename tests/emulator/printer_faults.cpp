@@ -95,9 +95,8 @@ UsbTaken PrinterEmulator::take_bytes(std::span<const std::byte> data) {
     }
     if (flip_next_) most = 1;
     const std::byte flipped = data[taken] ^ std::byte{0x10};
-    const std::size_t fed = decoder_.feed(std::exchange(flip_next_, false)
-                                              ? std::span(&flipped, 1)
-                                              : data.subspan(taken, most));
+    const std::size_t fed = decoder_.feed(
+        std::exchange(flip_next_, false) ? std::span(&flipped, 1) : data.subspan(taken, most));
     taken += fed;
     frame_bytes_ += fed;
     if (!decoder_.fault().empty()) {
@@ -177,6 +176,7 @@ void PrinterEmulator::print_layers() {
     job.layers.push_back(std::move(waiting_.front().records));
     waiting_.pop_front();
     record_[job.number].push_back(layer);
+    printed_.notify_all();
     say_ack();
   }
 }

@@ -304,6 +304,10 @@ UmockdevBus::UmockdevBus(UsbDevice& device) : state_(std::make_unique<State>(dev
   g_signal_connect(state_->handler, "handle-ioctl", G_CALLBACK(State::on_ioctl), state_.get());
   g_signal_connect(state_->handler, "client-vanished", G_CALLBACK(State::on_vanished),
                    state_.get());
+  // Programs of other users look below this folder too, and make their sockets there.
+  gchar* root = umockdev_testbed_get_root_dir(state_->testbed);
+  chmod(root, 0777);
+  g_free(root);
   GError* error = nullptr;
   if (!umockdev_testbed_attach_ioctl(state_->testbed, kNode, state_->handler, &error)) {
     throw std::runtime_error(error->message);

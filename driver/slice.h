@@ -1,0 +1,50 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Slicing as slice and print share it: options, the header they lead to, and the encoded layers.
+#pragma once
+
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "driver/console.h"
+#include "driver/estimate.h"
+#include "driver/job.h"
+
+namespace CLI {
+class App;
+}
+
+namespace binderjet {
+
+struct SliceOptions {
+  std::vector<std::string> parts;
+  std::string profile;
+  std::string out;
+  std::string enhance = "none";
+  int passes = 2;
+  std::optional<double> layer_mm;
+  std::string units;
+  Placement placement;
+  std::vector<std::string> at;
+  std::string layers;
+};
+
+// The options that say how to slice: all but the parts, the profile, the output and --layers.
+void add_slice_options(CLI::App& verb, SliceOptions& options);
+
+struct SlicePlan {
+  JobHeader header;
+  std::shared_ptr<const Mesh> mesh;
+  std::vector<std::string> warnings;
+};
+
+// Reads and places the parts; says the warnings.
+SlicePlan plan_slices(const SliceOptions& options, const Console& console);
+
+// The records of these layers, as they are asked for.
+std::unique_ptr<Stream<EncodedLayer>> encoded_layers(const JobHeader& header,
+                                                     std::shared_ptr<const Mesh> mesh,
+                                                     LayerRange layers);
+
+}  // namespace binderjet
