@@ -64,8 +64,8 @@ number=900
 } >"$root/etc/group"
 cat >"$root/etc/passwd" <<'END'
 root:x:0:0::/:/bin/sh
-printing:x:1001:1000::/tmp:/bin/sh
-stranger:x:1002:1000::/tmp:/bin/sh
+printing:x:1001:1000::/tmp/printing:/bin/sh
+stranger:x:1002:1000::/tmp/stranger:/bin/sh
 END
 chmod 755 "$root"
 
