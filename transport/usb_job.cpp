@@ -57,6 +57,10 @@ Result<protocol::Welcome> UsbJob::greet() {
   for (int i = 1; i < kGreetings && !welcome && session_->worth_retrying(); ++i) {
     welcome = session_->greet(Clock::now() + time);
   }
+  if (welcome) {
+    max_layer_bytes_ = welcome->max_layer_bytes;
+    max_header_bytes_ = welcome->max_header_bytes;
+  }
   return welcome;
 }
 
@@ -122,6 +126,10 @@ Result<void> UsbJob::start(std::uint64_t number, int layers, const std::string& 
   acknowledged_ = 0;
   digest_ = protocol::first_digest(header, static_cast<std::uint32_t>(layers));
   healable_ = false;
+  if (header.size() > max_header_bytes_) {
+    return final(fmt::format("takes a job's header of {} bytes at most, and this one has {}",
+                             max_header_bytes_, header.size()));
+  }
   Result<Progress> ready = open(false);
   if (ready) return take_progress(*ready);
   return recover(ready.error());
@@ -142,6 +150,10 @@ Result<int> UsbJob::resume(std::uint64_t number, int layers, const std::string& 
 }
 
 Result<void> UsbJob::send(int layer, std::span<const std::byte> records) {
+  if (records.size() > max_layer_bytes_) {
+    return final(fmt::format("takes layers of {} bytes at most, and this one has {}",
+                             max_layer_bytes_, records.size()));
+  }
   const std::uint64_t before = window_.empty() ? digest_ : window_.back().digest;
   window_.push_back({{records.begin(), records.end()}, protocol::next_digest(before, records)});
   return run_until([this, layer] { return posted_ > layer; });

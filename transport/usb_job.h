@@ -76,6 +76,8 @@ class UsbJob {
   std::chrono::milliseconds patience_;
   Keep keep_;
 
+  std::uint64_t max_layer_bytes_ = 0;  // as WELCOME says
+  std::uint64_t max_header_bytes_ = 0;
   std::uint64_t number_ = 0;
   int layers_ = 0;
   std::string header_;

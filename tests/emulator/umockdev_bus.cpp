@@ -21,6 +21,7 @@
 #include <cstdlib>
 #include <cstring>
 #include <deque>
+#include <filesystem>
 #include <list>
 #include <mutex>
 #include <stdexcept>
@@ -304,14 +305,17 @@ UmockdevBus::UmockdevBus(UsbDevice& device) : state_(std::make_unique<State>(dev
   g_signal_connect(state_->handler, "handle-ioctl", G_CALLBACK(State::on_ioctl), state_.get());
   g_signal_connect(state_->handler, "client-vanished", G_CALLBACK(State::on_vanished),
                    state_.get());
-  // Programs of other users look below this folder too, and make their sockets there.
-  gchar* root = umockdev_testbed_get_root_dir(state_->testbed);
-  chmod(root, 0777);
-  g_free(root);
   GError* error = nullptr;
   if (!umockdev_testbed_attach_ioctl(state_->testbed, kNode, state_->handler, &error)) {
     throw std::runtime_error(error->message);
   }
+  // Programs of other users look below this folder too, and make and use sockets there.
+  gchar* root = umockdev_testbed_get_root_dir(state_->testbed);
+  for (const auto& entry : std::filesystem::recursive_directory_iterator(root)) {
+    if (!entry.is_symlink()) chmod(entry.path().c_str(), 0777);
+  }
+  chmod(root, 0777);
+  g_free(root);
   add();
   state_->pump = std::thread([this] { state_->run_pump(); });
 }

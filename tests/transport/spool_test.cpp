@@ -285,7 +285,10 @@ TEST_F(SpoolTest, RemovesAJobThatNeverStarted) {
 TEST(Journal, BelievesNoChangedLine) {
   const TempFolder folder;
   {
-    auto journal = Journal::create(folder / "journal", {false, 40, "a", "", 0, 0, ""});
+    JournalState start;
+    start.layer_count = 40;
+    start.name = "a";
+    auto journal = Journal::create(folder / "journal", start);
     ASSERT_TRUE(journal->acknowledge(1, 100) && journal->acknowledge(2, 200));
     ASSERT_TRUE(journal->held("50 % of the powder\nis gone"));
   }
@@ -303,6 +306,21 @@ TEST(Journal, BelievesNoChangedLine) {
     EXPECT_EQ(state->acknowledged,
               std::max<std::ptrdiff_t>(0, std::min<std::ptrdiff_t>(lines, 3) - 1));
   }
+}
+
+TEST(Journal, RemembersTheDeviceAndTheDigest) {
+  const TempFolder folder;
+  JournalState start;
+  start.layer_count = 40;
+  start.to = "usb://1209:0001/A B";
+  start.key = 0xfedcba9876543210;
+  ASSERT_TRUE(Journal::create(folder / "journal", start)->acknowledge(7, 0, 0x8000000000000001));
+  const auto state = Journal::peek(folder / "journal");
+  ASSERT_TRUE(state && state->started);
+  EXPECT_EQ(state->to, start.to);
+  EXPECT_EQ(state->key, start.key);
+  EXPECT_EQ(state->acknowledged, 7);
+  EXPECT_EQ(state->digest, 0x8000000000000001);
 }
 
 TEST(FileBackend, WritesTheSameJobAndNothingHalf) {

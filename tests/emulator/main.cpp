@@ -1,0 +1,78 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// binderjet-emulator: a printer to plug in without one, which prints into slice stacks.
+#include <fmt/core.h>
+
+#include <CLI/CLI.hpp>
+#include <atomic>
+#include <csignal>
+#include <exception>
+#include <thread>
+
+#include "tests/emulator/printed_volume.h"
+#include "tests/emulator/printer_emulator.h"
+#include "tests/emulator/usbip_server.h"
+
+namespace {
+
+std::atomic<bool> stop{false};
+static_assert(std::atomic<bool>::is_always_lock_free, "a signal handler writes it");
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  using namespace binderjet;
+  CLI::App program{
+      "An emulated powder-binder printer on USB, for binderjet's tests and for trying it",
+      "binderjet-emulator"};
+  int port = 3240;
+  int layer_ms = 0;
+  std::string out;
+  std::vector<std::string> faults;
+  EmulatorOptions options;
+  program
+      .add_option("--usbip", port,
+                  "serve USB/IP on this port of 127.0.0.1; then, on Linux: modprobe vhci-hcd; "
+                  "usbip attach -r 127.0.0.1 -b 1-1")
+      ->capture_default_str();
+  program.add_option("--serial", options.serial, "its serial number")->capture_default_str();
+  program.add_option("--layer-ms", layer_ms, "how long it prints at one layer")
+      ->capture_default_str();
+  program.add_option("--fault", faults,
+                     "FAULT@LAYERxTIMES:MS, such as stall@12x1:0; may be repeated");
+  program.add_option("-o,--output", out, "folder for what it printed: a slice stack for each job")
+      ->required();
+  CLI11_PARSE(program, argc, argv);
+  options.layer_time = std::chrono::milliseconds(layer_ms);
+  for (const std::string& text : faults) {
+    const auto fault = parse_fault(text);
+    if (!fault) {
+      fmt::print(stderr, "binderjet-emulator: --fault {}: no such fault; there are:", text);
+      for (const PrinterFault one : all_printer_faults())
+        fmt::print(stderr, " {}", fault_word(one));
+      fmt::print(stderr, "\n");
+      return 2;
+    }
+    options.plan.push_back(*fault);
+  }
+  std::signal(SIGINT, [](int) { stop = true; });
+  std::signal(SIGTERM, [](int) { stop = true; });
+  PrinterEmulator printer(options);
+  if (!serve_usbip(printer, port, stop)) {
+    fmt::print(stderr, "binderjet-emulator: port {} is taken\n", port);
+    return 4;
+  }
+  try {
+    int number = 0;
+    for (const EmulatedJob& job : printer.jobs()) {
+      ++number;
+      const std::string folder = fmt::format("{}/{}", out, number);
+      write_measured(print_volume(job), folder);
+      fmt::print("{}: {} of {} layers{}\n", folder, job.layers.size(), job.layer_count,
+                 job.done ? "" : ", unfinished");
+    }
+  } catch (const std::exception& error) {
+    fmt::print(stderr, "binderjet-emulator: {}\n", error.what());
+    return 3;
+  }
+  return 0;
+}
