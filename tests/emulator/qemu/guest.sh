@@ -47,9 +47,7 @@ cp "$here/init" "$root/init"
 cp "$@" "$root/"
 
 cp /lib/udev/rules.d/50-udev-default.rules "$root/lib/udev/rules.d/"
-for rule in "$here"/../../../udev/*.rules; do
-  if [ -f "$rule" ]; then cp "$rule" "$root/lib/udev/rules.d/"; fi
-done
+cp "$here/../../../udev/60-binderjet.rules" "$root/lib/udev/rules.d/"
 # udevd skips a rule whose group nobody knows. One user is in lp, one is not.
 number=900
 {

@@ -41,7 +41,7 @@ timeout 120 qemu-system-x86_64 -machine q35,accel=tcg -cpu max -smp 2 -m 1024 -d
   -device virtio-blk-pci,drive=disk -chardev socket,id=usb,path=usb,server=on,wait=off \
   -device qemu-xhci,id=xhci -device usb-redir,chardev=usb,bus=xhci.0 &
 machine=$!
-"$emulator" --usbredir usb >printer.log 2>&1 &
+"$emulator" --usbredir usb -o printed >printer.log 2>&1 &
 printer=$!
 status=0
 wait "$machine" || status=$?
@@ -62,5 +62,9 @@ if grep -q FAIL out/checks; then
   tail -n 30 out/node out/*.err out/*.out out/*.status out/dmesg console
   exit 1
 fi
+grep -q "100 of 100 layers$" printer.log || {
+  echo "FAIL: the emulator has not printed the job"
+  exit 1
+}
 "$here/compare.py" out/capture.pcap job.bjob spool/done/*.bjob
 step "pass"
