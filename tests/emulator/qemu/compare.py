@@ -4,7 +4,7 @@
 
 compare.py CAPTURE.pcap JOB.bjob [SPOOLED.bjob]
 
-The capture is decoded by tshark; frames (transport/PROTOCOL.md) and job file (transport/job_format.h)
+tshark decodes the capture. Frames (transport/PROTOCOL.md) and job files (transport/job_format.h)
 are taken apart here, by the pages that describe them and not by the program's own code.
 """
 import hashlib
@@ -112,7 +112,7 @@ def main(capture, job, *spooled):
             numbers.append(struct.unpack_from("<QI", payload)[1])
             sent.append(payload[LAYER_HEAD_BYTES:])
     need(header in sent_header, "the header on the wire is another")
-    need(numbers == layers_of(records), "the layers on the wire are not those of the file, once each")
+    need(numbers == layers_of(records), "the wire has not each layer of the file once, in order")
     need(b"".join(sent) == records, "the records on the wire differ from the file")
     need(END in kinds, "the job was not ended")
     need(len(records) >= 10_000_000, f"{len(records)} bytes of records are less than 10 MB")

@@ -1,7 +1,8 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: GPL-3.0-or-later
-# Builds what the guest boots from: guest.sh KERNEL_DIR OUT_DIR PROGRAM... -- FILE... (files go to /)
-# leaves OUT_DIR/initramfs, which mounts the disk, and OUT_DIR/disk, which has everything else.
+# Builds what the guest boots from: guest.sh KERNEL_DIR OUT_DIR PROGRAM... -- FILE... leaves
+# OUT_DIR/initramfs, which mounts the disk, and OUT_DIR/disk, which has everything else; the files
+# stand in its root.
 set -euo pipefail
 here=$(cd "$(dirname "$0")" && pwd)
 kernel=$1 out=$2
