@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Binder wets its own pixel, creeps along x and y unequally, and sinks through thin layers.
+// Drops wet a window of pixels and sink one layer; a pixel that got enough binds.
 #include "tests/emulator/printed_volume.h"
 
 #include <zstd.h>
@@ -14,15 +14,16 @@
 namespace binderjet {
 namespace {
 
-// Parts of binder that reach a pixel, in hundredths of a drop. The numbers are this printer's own:
-// nobody measured them, and whoever calibrates has to find them.
-constexpr int kOwn = 58;
-constexpr int kAlongX = 13;    // from each neighbour in x
-constexpr int kAlongY = 7;     // and in y
-constexpr int kFromAbove = 9;  // what sinks from the layer above
-constexpr int kWet = 50;       // enough to bind
+// This printer's own physics, in drops: nobody measured it, and whoever calibrates has to find it.
+// A pixel is wetted by the drops around it, further along x than along y, and by what sinks from
+// the layer above; the top of a part, with nothing above it, comes out narrower.
+constexpr int kReachX = 2;
+constexpr int kReachY = 1;
+constexpr int kSinkReachX = 1;
+constexpr int kSinks = 2;  // drops, if any fell above
+constexpr int kBinds = 7;  // drops
 
-using Bits = std::vector<std::uint8_t>;  // one byte a pixel, with a margin of one around
+using Bits = std::vector<std::uint8_t>;  // one byte a pixel, with a dry margin around
 
 struct Plane {
   int width, height;
@@ -30,10 +31,16 @@ struct Plane {
   Plane(int w, int h)
       : width(w),
         height(h),
-        bits(static_cast<std::size_t>(w + 2) * static_cast<std::size_t>(h + 2)) {}
+        bits(static_cast<std::size_t>(w + 2 * kReachX) *
+             static_cast<std::size_t>(h + 2 * kReachY)) {}
   std::size_t at(int x, int y) const {
-    return static_cast<std::size_t>(y + 1) * static_cast<std::size_t>(width + 2) +
-           static_cast<std::size_t>(x + 1);
+    return static_cast<std::size_t>(y + kReachY) * static_cast<std::size_t>(width + 2 * kReachX) +
+           static_cast<std::size_t>(x + kReachX);
+  }
+  int drops(int x, int y, int reach_x) const {
+    int sum = 0;
+    for (int i = x - reach_x; i <= x + reach_x; ++i) sum += bits[at(i, y)];
+    return sum;
   }
 };
 
@@ -67,11 +74,10 @@ std::vector<std::byte> bind(const Plane& mask, const Plane* above) {
   std::vector<std::byte> out(row_bytes * static_cast<std::size_t>(mask.height));
   for (int y = 0; y < mask.height; ++y) {
     for (int x = 0; x < mask.width; ++x) {
-      int binder = kOwn * mask.bits[mask.at(x, y)];
-      binder += kAlongX * (mask.bits[mask.at(x - 1, y)] + mask.bits[mask.at(x + 1, y)]);
-      binder += kAlongY * (mask.bits[mask.at(x, y - 1)] + mask.bits[mask.at(x, y + 1)]);
-      if (above != nullptr) binder += kFromAbove * above->bits[above->at(x, y)];
-      if (binder < kWet) continue;
+      int binder = 0;
+      for (int j = y - kReachY; j <= y + kReachY; ++j) binder += mask.drops(x, j, kReachX);
+      if (above != nullptr && above->drops(x, y, kSinkReachX) > 0) binder += kSinks;
+      if (binder < kBinds) continue;
       std::byte& byte =
           out[row_bytes * static_cast<std::size_t>(y) + static_cast<std::size_t>(x) / 8];
       byte |= static_cast<std::byte>(0x80 >> x % 8);

@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "tests/emulator/printed_volume.h"
 #include "tests/emulator/printer_emulator.h"
 #include "tests/emulator/umockdev_bus.h"
 #include "tests/transport/sample_job.h"
@@ -81,6 +82,9 @@ class PrinterTest : public testing::Test {
     EXPECT_TRUE(printed.done);
     EXPECT_EQ(printed.header, kSampleHeader);
     EXPECT_TRUE(printed.layers == whole_print()) << "the printed layers are not those of the job";
+    EmulatedJob unfaulted = printed;
+    unfaulted.layers = whole_print();
+    EXPECT_TRUE(print_volume(printed) == print_volume(unfaulted)) << "another volume was printed";
     std::vector<int> once(kPrintLayers);
     std::iota(once.begin(), once.end(), 0);
     EXPECT_EQ(printer_.record(), once);
