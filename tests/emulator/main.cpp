@@ -1,21 +1,44 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // binderjet-emulator: a printer to plug in without one, which prints into slice stacks.
 #include <fmt/core.h>
+#include <sys/eventfd.h>
 
 #include <CLI/CLI.hpp>
 #include <atomic>
 #include <csignal>
 #include <exception>
+#include <string>
 #include <thread>
 
 #include "tests/emulator/printed_volume.h"
 #include "tests/emulator/printer_emulator.h"
 #include "tests/emulator/usbip_server.h"
+#include "tests/emulator/usbredir_serve.h"
 
 namespace {
 
 std::atomic<bool> stop{false};
+const int stop_event = eventfd(0, EFD_CLOEXEC | EFD_NONBLOCK);
 static_assert(std::atomic<bool>::is_always_lock_free, "a signal handler writes it");
+
+void ask_to_stop(int) {
+  stop = true;
+  eventfd_write(stop_event, 1);
+}
+
+// Says on stderr why it could not serve.
+bool serve(binderjet::PrinterEmulator& printer, const std::string& usbredir, int port) {
+  using namespace binderjet;
+  if (usbredir.empty()) {
+    if (serve_usbip(printer, port, stop)) return true;
+    fmt::print(stderr, "binderjet-emulator: port {} is taken\n", port);
+    return false;
+  }
+  const UsbredirResult result = serve_usbredir(printer, usbredir, stop_event);
+  if (result.end != UsbredirEnd::kFailed) return true;
+  fmt::print(stderr, "binderjet-emulator: {}\n", result.why);
+  return false;
+}
 
 }  // namespace
 
@@ -26,6 +49,7 @@ int main(int argc, char** argv) {
       "binderjet-emulator"};
   int port = 3240;
   int layer_ms = 0;
+  std::string usbredir;
   std::string out;
   std::vector<std::string> faults;
   EmulatorOptions options;
@@ -34,6 +58,10 @@ int main(int argc, char** argv) {
                   "serve USB/IP on this port of 127.0.0.1; then, on Linux: modprobe vhci-hcd; "
                   "usbip attach -r 127.0.0.1 -b 1-1")
       ->capture_default_str();
+  program.add_option("--usbredir", usbredir,
+                     "instead plug into the QEMU that has -chardev "
+                     "socket,id=c,path=PATH,server=on,wait=off -device usb-redir,chardev=c; ends "
+                     "when QEMU does, or when a fault takes the printer away");
   program.add_option("--serial", options.serial, "its serial number")->capture_default_str();
   program.add_option("--layer-ms", layer_ms, "how long it prints at one layer")
       ->capture_default_str();
@@ -54,13 +82,10 @@ int main(int argc, char** argv) {
     }
     options.plan.push_back(*fault);
   }
-  std::signal(SIGINT, [](int) { stop = true; });
-  std::signal(SIGTERM, [](int) { stop = true; });
+  std::signal(SIGINT, ask_to_stop);
+  std::signal(SIGTERM, ask_to_stop);
   PrinterEmulator printer(options);
-  if (!serve_usbip(printer, port, stop)) {
-    fmt::print(stderr, "binderjet-emulator: port {} is taken\n", port);
-    return 4;
-  }
+  if (!serve(printer, usbredir, port)) return 4;
   try {
     int number = 0;
     for (const EmulatedJob& job : printer.jobs()) {
