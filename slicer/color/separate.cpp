@@ -24,8 +24,7 @@ float noise(int x, int y, int salt) {
 }
 
 RunLayer diffuse(std::span<const std::byte> rgb, int width, int height, int channel, int salt) {
-  constexpr float kThresholdNoise = 60;  // of 255
-  constexpr float kFirstError = 110;
+  constexpr float kThresholdNoise = 80;                   // of 255
   const auto size = static_cast<std::size_t>(width) + 2;  // one more on either side
   std::vector<float> errors(size, 0), next(size, 0);
   std::vector<bool> drops(size), was_ink(size, false), is_ink(size, false);
@@ -43,17 +42,21 @@ RunLayer diffuse(std::span<const std::byte> rgb, int width, int height, int chan
       drops[i] = false;
       is_ink[i] = ink > 0;
       if (ink <= 0) continue;
-      // Without a neighbour above, nothing has told yet where the last drop was.
-      const float first = was_ink[i] ? 0 : kFirstError * noise(x, y, salt + 1);
-      const float wanted = ink + errors[i] + first;
-      drops[i] = wanted > 127.5F + kThresholdNoise * noise(x, y, salt);
+      // Without a neighbour above nothing has told yet where the last drop was: chance says, with
+      // the tone as its odds.
+      const bool first = !was_ink[i];
+      const float wanted = first ? ink + 127.5F * noise(x, y, salt + 1) : ink + errors[i];
+      drops[i] = wanted > 127.5F + (first ? 0 : kThresholdNoise * noise(x, y, salt));
       const float error = wanted - (drops[i] ? 255.0F : 0.0F);
       const auto ahead = static_cast<std::size_t>(static_cast<int>(i) + step);
       const auto behind = static_cast<std::size_t>(static_cast<int>(i) - step);
-      errors[ahead] += error * (7.0F / 16);
-      next[behind] += error * (3.0F / 16);
-      next[i] += error * (5.0F / 16);
-      next[ahead] += error * (1.0F / 16);
+      // Floyd and Steinberg's weights, shaken in pairs (Ulichney): light tones grow worms if not.
+      const float most = 4.5F / 16 * noise(x, y, salt + 0x1000003);
+      const float least = 1.0F / 16 * noise(x, y, salt + 0x2000003);
+      errors[ahead] += error * (7.0F / 16 + most);
+      next[i] += error * (5.0F / 16 - most);
+      next[behind] += error * (3.0F / 16 + least);
+      next[ahead] += error * (1.0F / 16 - least);
     }
     bool inside = false;
     for (int x = 0; x < width; ++x) {
