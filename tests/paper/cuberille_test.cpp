@@ -3,9 +3,6 @@
 // been sent at once, and costs this much more.
 #include <fmt/format.h>
 #include <gtest/gtest.h>
-#include <spawn.h>
-#include <sys/resource.h>
-#include <sys/wait.h>
 
 #include <chrono>
 #include <filesystem>
@@ -13,9 +10,7 @@
 
 #include "driver/mask_source.h"
 #include "tests/support/models.h"
-#include "tests/transport/sample_job.h"
-
-extern char** environ;
+#include "tests/support/program.h"
 
 namespace binderjet {
 namespace {
@@ -29,21 +24,13 @@ struct Cost {
   }
 };
 
-// Runs the program to its end and says what it cost.
-Cost run(std::vector<std::string> words) {
-  words.insert(words.begin(), BINDERJET_PROGRAM);
+Cost run(const Workplace& place, std::vector<std::string> words) {
   words.emplace_back("-q");
-  std::vector<char*> arguments;
-  for (std::string& word : words) arguments.push_back(word.data());
-  arguments.push_back(nullptr);
   const auto start = std::chrono::steady_clock::now();
-  pid_t child = 0;
-  int status = posix_spawn(&child, BINDERJET_PROGRAM, nullptr, nullptr, arguments.data(), environ);
-  rusage usage{};
-  if (status == 0) wait4(child, &status, 0, &usage);
-  EXPECT_EQ(status, 0) << words[1];
+  const Ran ran = place.run(words);
+  EXPECT_EQ(ran.status, 0) << words[0] << ": " << ran.err;
   return {std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count(),
-          static_cast<double>(usage.ru_maxrss) / 1024};
+          ran.peak_rss_mb};
 }
 
 // The masks cut to the pixels that hold any binder; the mesh does not know the powder around.
@@ -70,14 +57,16 @@ std::vector<RunLayer> trimmed(const std::string& path) {
 }
 
 TEST(PaperCuberille, GivesTheSameMasksAndCostsMore) {
-  const TempFolder folder;
+  const Workplace folder;
   const auto file = [&](const char* name) { return folder / name; };
   models::write_obj(models::golf_ball(8), file("ball.obj"));
 
-  const Cost direct = run({"slice", file("ball.obj"), "-p", "z450", "-o", file("direct.bjob"),
-                           "--enhance", "paper", "--passes", "2"});
-  const Cost write = run({"export", file("direct.bjob"), "--cuberille", file("cuberille.ply")});
-  const Cost again = run({"slice", file("cuberille.ply"), "-p", "z450", "-o", file("again.bjob")});
+  const Cost direct = run(folder, {"slice", file("ball.obj"), "-p", "z450", "-o",
+                                   file("direct.bjob"), "--enhance", "paper", "--passes", "2"});
+  const Cost write =
+      run(folder, {"export", file("direct.bjob"), "--cuberille", file("cuberille.ply")});
+  const Cost again =
+      run(folder, {"slice", file("cuberille.ply"), "-p", "z450", "-o", file("again.bjob")});
   const Cost detour = direct + write + again;
 
   std::cout << fmt::format(
