@@ -3,6 +3,7 @@
 #include <fmt/core.h>
 
 #include <CLI/CLI.hpp>
+#include <chrono>
 #include <memory>
 #include <string>
 #include <vector>
@@ -74,11 +75,14 @@ void status(const Console& console, const Options& options) {
 }
 
 void cancel(const Console& console, const Options& options) {
+  const auto begin = std::chrono::steady_clock::now();
   const auto backend = backend_at(options.to);
   value_or_throw(backend->cancel(options.id));
   nlohmann::ordered_json result;
   result["job"] = options.id;
   result["cancelled"] = true;
+  result["seconds"] =
+      std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
   console.result(result, fmt::format("job {} is cancelled", options.id));
 }
 

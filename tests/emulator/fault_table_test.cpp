@@ -14,6 +14,8 @@ struct Row {
   const char* line;  // what the fault is called, or null where the job gets through by itself
 };
 
+void PrintTo(const Row& row, std::ostream* out) { *out << to_text(row.fault); }
+
 // A fault that lasts (times -1, or 0 ms) is healed by a person before the resume.
 const Row kTable[] = {
     {{F::kNak, 12, 1, 300}, nullptr},

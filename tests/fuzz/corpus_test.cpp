@@ -15,6 +15,8 @@ struct Target {
   void (*run)(const std::uint8_t*, std::size_t);
 };
 
+void PrintTo(const Target& target, std::ostream* out) { *out << target.name; }
+
 class Corpus : public testing::TestWithParam<Target> {};
 
 TEST_P(Corpus, BreaksNoDecoder) {
