@@ -32,10 +32,7 @@ void shares_of(int y, int repeat, int rows, const BoxWeights& weights,
 class RowBuilder {
  public:
   RowBuilder(const RunLayer& in, int repeat, const BoxWeights& x, std::int64_t least, RunLayer& out)
-      : in_(in), repeat_(repeat), x_(x), least_(least), out_(out) {
-    std::int64_t sum = 0;
-    for (int offset = -x.reach; offset <= x.reach; ++offset) rise_.push_back(sum += x.at(offset));
-  }
+      : in_(in), repeat_(repeat), x_(x), least_(least), out_(out) {}
 
   void build(const std::vector<RowShare>& shares) {
     if (!build_edges(shares)) build_ramps(shares);
@@ -87,10 +84,10 @@ class RowBuilder {
   std::int64_t half_lines(const std::vector<RowShare>& shares, std::size_t i, int x) const {
     std::int64_t sum = 0;
     for (std::size_t r = 0; r < rows_.size(); ++r) {
-      const int inside = x - rows_[r][i] * repeat_ + x_.reach;
-      if (inside < 0) continue;
-      const std::size_t step = std::min(static_cast<std::size_t>(inside), rise_.size() - 1);
-      sum += shares[r].weight * rise_[step];
+      // A ramp is a straight line but for its ends, which weigh less than a whole step.
+      const std::int64_t inside = x - rows_[r][i] * repeat_ + x_.reach;
+      const std::int64_t rise = std::clamp(x_.end + inside * x_.full, std::int64_t{0}, x_.total());
+      sum += shares[r].weight * rise;
     }
     return sum;
   }
@@ -175,9 +172,8 @@ class RowBuilder {
   const BoxWeights& x_;
   std::int64_t least_;
   RunLayer& out_;
-  std::vector<std::int64_t> rise_;  // the sum along a ramp of weight 1
-  std::vector<const int*> rows_;    // the flips of the rows in reach
-  std::vector<int> guess_;          // where the flips of the row before are
+  std::vector<const int*> rows_;  // the flips of the rows in reach
+  std::vector<int> guess_;        // where the flips of the row before are
   std::vector<Ramp> ramps_;
   std::vector<std::int64_t> steps_;
   std::int64_t sum_ = 0;

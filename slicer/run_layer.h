@@ -32,7 +32,7 @@ class RunLayer {
   // [f2, f3) ... are 1. Rows outside the layer are powder.
   std::span<const int> row(int y) const {
     if (y < 0 || y >= height()) return {};
-    const std::size_t first = y == 0 ? 0 : ends_[static_cast<std::size_t>(y) - 1];
+    const std::size_t first = row_begin(y);
     return {flips_.data() + first, ends_[static_cast<std::size_t>(y)] - first};
   }
 
@@ -71,6 +71,18 @@ class RunLayer {
     flips_.insert(flips_.end(), flips.begin(), flips.end());
     end_row();
   }
+  // Appends the rows [first, last) of another layer of this width.
+  void append_rows(const RunLayer& from, int first, int last) {
+    if (first >= last) return;
+    const std::size_t begin = from.row_begin(first);
+    const std::size_t end = from.ends_[static_cast<std::size_t>(last) - 1];
+    const std::size_t to = flips_.size();
+    flips_.insert(flips_.end(), from.flips_.begin() + static_cast<std::ptrdiff_t>(begin),
+                  from.flips_.begin() + static_cast<std::ptrdiff_t>(end));
+    for (int y = first; y < last; ++y) {
+      ends_.push_back(from.ends_[static_cast<std::size_t>(y)] - begin + to);
+    }
+  }
   void reserve(int height, std::size_t flips) {
     ends_.reserve(static_cast<std::size_t>(height));
     flips_.reserve(flips);
@@ -80,7 +92,8 @@ class RunLayer {
   bool operator==(const RunLayer&) const = default;
 
  private:
-  std::size_t row_begin() const { return ends_.empty() ? 0 : ends_.back(); }
+  std::size_t row_begin(int y) const { return y == 0 ? 0 : ends_[static_cast<std::size_t>(y) - 1]; }
+  std::size_t row_begin() const { return row_begin(height()); }  // of the row being built
 
   int width_;
   std::vector<std::size_t> ends_;  // per row, where its flips end

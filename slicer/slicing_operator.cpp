@@ -30,7 +30,7 @@ bool add_edges(const std::vector<std::span<const int>>& rows, int rx, int half, 
   for (const std::span<const int>& row : rows) {
     if (row.size() != flips) return false;
   }
-  int last_pixel = -1;
+  int next_pixel = 0;  // in voxels, where the pixels begin that no flip has touched
   for (std::size_t i = 0; i < flips; ++i) {
     int low = rows.front()[i];
     int high = low;
@@ -38,8 +38,8 @@ bool add_edges(const std::vector<std::span<const int>>& rows, int rx, int half, 
       low = std::min(low, row[i]);
       high = std::max(high, row[i]);
     }
-    if (low / rx <= last_pixel) return false;
-    last_pixel = high / rx;
+    if (low < next_pixel) return false;
+    next_pixel = (high / rx + 1) * rx;
   }
   for (std::size_t i = 0; i < flips; ++i) {
     // Voxels of a pixel that lie behind the flip; a run's end leaves the others.
@@ -47,7 +47,8 @@ bool add_edges(const std::vector<std::span<const int>>& rows, int rx, int half, 
     int pixel = rows.front()[i] / rx;
     const auto behind = [&](int p) {
       int count = 0;
-      for (const std::span<const int>& row : rows) count += std::clamp((p + 1) * rx - row[i], 0, rx);
+      for (const std::span<const int>& row : rows)
+        count += std::clamp((p + 1) * rx - row[i], 0, rx);
       return count;
     };
     while (behind(pixel) < needed) ++pixel;
