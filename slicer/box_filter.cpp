@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 #include <utility>
 #include <vector>
 
@@ -21,10 +22,12 @@ void shares_of(int y, int repeat, int rows, const BoxWeights& weights,
   shares.clear();
   const int first = std::max(0, y - weights.reach);
   const int last = std::min(rows * repeat - 1, y + weights.reach);
-  for (int voxel_row = first; voxel_row <= last; ++voxel_row) {
-    const int row = voxel_row / repeat;
-    if (shares.empty() || shares.back().row != row) shares.push_back({row, 0});
-    shares.back().weight += weights.at(voxel_row - y);
+  for (int row = first / repeat; row * repeat <= last; ++row) {
+    std::int64_t weight = 0;
+    for (int voxel_row = row * repeat; voxel_row < (row + 1) * repeat; ++voxel_row) {
+      weight += weights.at(voxel_row - y);
+    }
+    shares.push_back({row, weight});
   }
 }
 
@@ -42,42 +45,69 @@ class RowBuilder {
  private:
   // The common case: all rows in reach have the same runs but for a slope, and the slopes of
   // different flips do not meet. Then the sum only rises or only falls along each slope, and the
-  // flip is where it passes `least`, close to where it did in the row before.
+  // flip is where it passes `least`.
   bool build_edges(const std::vector<RowShare>& shares) {
     const std::size_t flips = shares.empty() ? 0 : in_.row(shares.front().row).size();
     rows_.clear();
-    std::int64_t full = 0;
+    std::int64_t weight = 0;
     for (const RowShare& share : shares) {
       const std::span<const int> row = in_.row(share.row);
       if (row.size() != flips) return false;
       rows_.push_back(row.data());
-      full += share.weight * x_.total();
+      weight += share.weight;
     }
-    if (flips == 0 || full < least_) return flips == 0 || !overlaps(flips);
-    if (overlaps(flips)) return false;
-    guess_.resize(flips, 0);
+    const std::int64_t full = weight * x_.total();
+    places_.resize(flips, 0);
+    int end = -2 * x_.reach - 1;  // of the slope before
     for (std::size_t i = 0; i < flips; ++i) {
+      const Slope slope = slope_of(shares, i);
+      if (slope.low - x_.reach < end) return false;
+      end = slope.high + x_.reach + 1;
+      if (full < least_) continue;
       const std::int64_t needed = i % 2 == 0 ? least_ : full - least_ + 1;
-      guess_[i] = first_at_least(needed, shares, i, guess_[i]);
+      const std::optional<int> place = straight_place(needed, slope, weight);
+      places_[i] = place ? *place : first_at_least(needed, shares, i, places_[i]);
     }
     // A flip may leave the layer together with the powder around it.
-    for (const int x : guess_) out_.flip(std::clamp(x, 0, out_.width()));
+    for (std::size_t i = 0; i < flips && full >= least_; ++i) {
+      out_.flip(std::clamp(places_[i], 0, out_.width()));
+    }
     return true;
   }
 
-  bool overlaps(std::size_t flips) const {
-    int end = -2 * x_.reach - 1;
-    for (std::size_t i = 0; i < flips; ++i) {
-      int low = rows_.front()[i];
-      int high = low;
-      for (const int* row : rows_) {
-        low = std::min(low, row[i]);
-        high = std::max(high, row[i]);
-      }
-      if (low * repeat_ - x_.reach < end) return true;
-      end = high * repeat_ + x_.reach + 1;
+  // The flips of one rank in all rows in reach, in voxels.
+  struct Slope {
+    int low;
+    int high;
+    std::int64_t weighted;  // their sum, each times its row's weight
+  };
+
+  Slope slope_of(const std::vector<RowShare>& shares, std::size_t i) const {
+    int low = rows_.front()[i];
+    int high = low;
+    std::int64_t weighted = 0;
+    for (std::size_t r = 0; r < rows_.size(); ++r) {
+      const int flip = rows_[r][i];
+      low = std::min(low, flip);
+      high = std::max(high, flip);
+      weighted += shares[r].weight * flip;
     }
-    return false;
+    return {low * repeat_, high * repeat_, weighted * repeat_};
+  }
+
+  // Along a steep edge the ramps of all rows lie over each other, and where they do their sum is a
+  // straight line: the first place with at least `needed` on it, if it is on it.
+  std::optional<int> straight_place(std::int64_t needed, const Slope& slope,
+                                    std::int64_t weight) const {
+    const int first = slope.high - x_.reach;    // all ramps have begun
+    const int last = slope.low + x_.reach - 1;  // none has ended
+    if (first >= last) return std::nullopt;
+    const std::int64_t rise = weight * x_.full;
+    const std::int64_t from = weight * (x_.end + x_.reach * x_.full) - slope.weighted * x_.full;
+    const std::int64_t above = needed - from;
+    const std::int64_t place = above / rise + (above % rise > 0 ? 1 : 0);
+    if (place <= first || place > last) return std::nullopt;
+    return static_cast<int>(place);
   }
 
   // The sum at x of the half-lines that begin at flip `i` of each row.
@@ -173,7 +203,7 @@ class RowBuilder {
   std::int64_t least_;
   RunLayer& out_;
   std::vector<const int*> rows_;  // the flips of the rows in reach
-  std::vector<int> guess_;        // where the flips of the row before are
+  std::vector<int> places_;       // of the flips in the result, here or in the row before
   std::vector<Ramp> ramps_;
   std::vector<std::int64_t> steps_;
   std::int64_t sum_ = 0;
