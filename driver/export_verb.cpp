@@ -121,8 +121,10 @@ void export_planes(const MaskSource& job, const ExportOptions& options, const Co
   }
   Progress progress(console, "writing", job.size_px[2]);
   for_each_layer(job.size_px[2], progress, [&](int index) {
+    std::vector<std::byte> rgb = job.color(index);
+    whiten_outside(job.read(index), rgb);
     const std::array<RunLayer, 3> planes =
-        separate_cmy(job.color(index), job.size_px[0], job.size_px[1], job.first + index);
+        separate_cmy(rgb, job.size_px[0], job.size_px[1], job.first + index);
     for (std::size_t c = 0; c < 3; ++c) stacks[c]->write(index, planes[c]);
   });
   for (const auto& stack : stacks) stack->finish();

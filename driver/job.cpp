@@ -19,12 +19,14 @@ namespace {
 using Json = nlohmann::ordered_json;
 
 Json to_json(const Source& source) {
-  return {{"file", source.file},
-          {"hash", source.hash},
-          {"unit_mm", source.placement.unit_mm},
-          {"scale", source.placement.scale},
-          {"rotate_deg", source.placement.rotate_deg},
-          {"corner_px", source.corner_px}};
+  Json json = {{"file", source.file},
+               {"hash", source.hash},
+               {"unit_mm", source.placement.unit_mm},
+               {"scale", source.placement.scale},
+               {"rotate_deg", source.placement.rotate_deg},
+               {"corner_px", source.corner_px}};
+  if (source.placement.wall_mm > 0) json["wall_mm"] = source.placement.wall_mm;
+  return json;
 }
 
 Source source_of(const Json& json) {
@@ -35,6 +37,7 @@ Source source_of(const Json& json) {
   json.at("scale").get_to(source.placement.scale);
   json.at("rotate_deg").get_to(source.placement.rotate_deg);
   json.at("corner_px").get_to(source.corner_px);
+  source.placement.wall_mm = json.value("wall_mm", 0.0);
   return source;
 }
 
@@ -135,11 +138,13 @@ Part load_part(const std::string& file, std::optional<double> unit_mm, const Pla
     read.paint = {};
   }
   part.warnings = std::move(read.warnings);
-  const Repair repair = repair_mesh(part.mesh, file);
-  for (const std::string& note : repair.notes) part.warnings.push_back(file + ": " + note);
-  for (const std::string& remark : repair.remarks) part.warnings.push_back(file + ": " + remark);
   part.source.placement = placement;
   part.source.placement.unit_mm = unit_mm.value_or(read.unit_mm);
+  const double wall =
+      placement.wall_mm / (part.source.placement.unit_mm * part.source.placement.scale);
+  const Repair repair = repair_mesh(part.mesh, file, wall);
+  for (const std::string& note : repair.notes) part.warnings.push_back(file + ": " + note);
+  for (const std::string& remark : repair.remarks) part.warnings.push_back(file + ": " + remark);
   part.request.where = file;
   part.request.size_mm = transform_part(part.mesh, part.source.placement, file,
                                         {&part.paint.points, &part.paint.samples});

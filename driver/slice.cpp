@@ -215,6 +215,9 @@ void add_slice_options(CLI::App& verb, SliceOptions& options) {
   verb.add_option("--at", options.at,
                   "X,Y in mm: the part's lower corner on the bed; once per part")
       ->allow_extra_args(false);
+  verb.add_option("--wall", options.placement.wall_mm,
+                  "give a surface that encloses nothing, as of a scan, a wall this thick, in mm")
+      ->check(CLI::PositiveNumber);
   verb.add_option("--texture", options.texture,
                   "the image for a model whose file has a place in it but names none");
   verb.add_flag("--color-enhance", options.color_enhance,

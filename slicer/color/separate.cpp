@@ -75,6 +75,25 @@ RunLayer diffuse(std::span<const std::byte> rgb, int width, int height, int chan
 
 }  // namespace
 
+void whiten_outside(const RunLayer& mask, std::span<std::byte> rgb) {
+  const auto row_bytes = 3 * static_cast<std::size_t>(mask.width());
+  assert(rgb.size() == row_bytes * static_cast<std::size_t>(mask.height()));
+  for (int y = 0; y < mask.height(); ++y) {
+    const auto row = rgb.subspan(static_cast<std::size_t>(y) * row_bytes, row_bytes);
+    std::size_t from = 0;
+    const auto whiten_until = [&](std::size_t to) {
+      std::fill(row.begin() + static_cast<std::ptrdiff_t>(from),
+                row.begin() + static_cast<std::ptrdiff_t>(to), std::byte{255});
+    };
+    const std::span<const int> runs = mask.row(y);
+    for (std::size_t i = 0; i + 1 < runs.size(); i += 2) {
+      whiten_until(3 * static_cast<std::size_t>(runs[i]));
+      from = 3 * static_cast<std::size_t>(runs[i + 1]);
+    }
+    whiten_until(row_bytes);
+  }
+}
+
 std::array<RunLayer, 3> separate_cmy(std::span<const std::byte> rgb, int width, int height,
                                      int layer) {
   assert(rgb.size() == 3 * static_cast<std::size_t>(width) * static_cast<std::size_t>(height));

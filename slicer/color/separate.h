@@ -10,6 +10,9 @@
 
 namespace binderjet {
 
+// Ink wets powder as binder does, so it goes only where the mask is: all else becomes white.
+void whiten_outside(const RunLayer& mask, std::span<std::byte> rgb);
+
 // Ink is what is missing to white: cyan takes away red, magenta green, yellow blue. `rgb` holds
 // 24-bit rows; white gets no drop. Error diffusion there and back over the rows, with thresholds
 // and first errors shaken by a hash of the place, so that even tones show neither worms nor seams

@@ -168,6 +168,8 @@ class Shell::Band {
   }
 
   void paint_row(int y, int low, int high, std::byte* bitmap) {
+    std::byte* row = bitmap + static_cast<std::size_t>(y) * 3 * static_cast<std::size_t>(width_);
+    paint_skin(y, row);
     const RunLayer& mask = skin(0)->masks->mask;
     const std::span<const int> runs = mask.row(y);
     if (runs.empty()) return;
@@ -177,7 +179,6 @@ class Shell::Band {
       near.insert(near.end(), used.begin(), used.end());
     }
     join(near);
-    std::byte* row = bitmap + static_cast<std::size_t>(y) * 3 * static_cast<std::size_t>(width_);
     for (const Stretch& s : near) {
       const int first = std::max(s.first, runs.front());
       const int last = std::min(s.last, runs.back());
@@ -197,6 +198,17 @@ class Shell::Band {
       }
     }
     paint_boundary(y, near, row);
+  }
+
+  // The skin itself, also where the mask leaves its pixel out: less than half of it is part.
+  void paint_skin(int y, std::byte* row) const {
+    const std::span<const int> runs = skin(0)->pixels.row(y);
+    std::size_t next = skin(0)->rows[static_cast<std::size_t>(y)];
+    for (std::size_t i = 0; i + 1 < runs.size(); i += 2) {
+      for (int x = runs[i]; x < runs[i + 1]; ++x, ++next) {
+        put(row + 3 * static_cast<std::size_t>(x), packed(skin(0)->colors[next]));
+      }
+    }
   }
 
   void gather_y(int y, int low, int high, int first, int last) {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The colored shell of a mask: color goes some millimetres deep, because powder is translucent;
-// inside and outside is white.
+// inside is white, and so is all that is neither mask nor skin.
 #pragma once
 
 #include <cstddef>
@@ -22,8 +22,9 @@ class Shell {
   int reach() const { return reach_[2]; }
 
   // The bitmap of a layer: 24-bit rows, red first, row 0 is the smallest y. `window` is the skin of
-  // layer - reach() to layer + reach(), null beyond the job's ends. A pixel of the mask takes the
-  // color of the nearest pixel of the skin if that is within the depth. A pixel on the mask's
+  // layer - reach() to layer + reach(), null beyond the job's ends. A pixel of the skin
+  // has its color whether or not the mask has it. A pixel of the mask takes the color of the
+  // nearest pixel of the skin if that is within the depth. A pixel on the mask's
   // boundary always has a color: what enhancement made boundary takes that of its neighbours, and
   // where there are none the surface's own. Pure; takes as much memory as the bitmap.
   std::vector<std::byte> paint(int layer, std::span<const Shared<SkinLayer>> window) const;

@@ -17,6 +17,7 @@ struct Placement {
   double scale = 1.0;
   std::array<double, 3> rotate_deg{};          // about x, then y, then z
   std::optional<std::array<double, 2>> at_mm;  // lower corner of the box on the bed; none: chosen
+  double wall_mm = 0;  // thickness given to a surface that encloses nothing; 0: none is given
 };
 
 struct Bed {

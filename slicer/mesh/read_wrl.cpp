@@ -71,7 +71,7 @@ bool includes_files(std::string_view text) {
 
 class SceneReader {
  public:
-  SceneReader(const std::string& path, const std::string& name) : path_(path), name_(name) {}
+  explicit SceneReader(const std::string& path) : path_(path) {}
 
   MeshFile read(SoNode& root) {
     SoCallbackAction action;
@@ -218,7 +218,6 @@ class SceneReader {
   }
 
   const std::string& path_;
-  const std::string& name_;
   MeshFile result_;
   Painter painter_;
   PointWelder welder_;
@@ -274,7 +273,7 @@ MeshFile read_wrl(InputFile& file, const std::string& path) {
                             fault.empty() ? "no reason given" : fault));
   }
   root->ref();
-  MeshFile result = SceneReader(path, name).read(*root);
+  MeshFile result = SceneReader(path).read(*root);
   root->unref();
   if (!fault.empty()) result.warnings.push_back("was read with a fault: " + fault);
   return result;

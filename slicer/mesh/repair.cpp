@@ -17,6 +17,7 @@
 #include "slicer/mesh/holes.h"
 #include "slicer/mesh/readers.h"
 #include "slicer/mesh/shells.h"
+#include "slicer/mesh/wall.h"
 #include "slicer/mesh/weld.h"
 
 namespace binderjet {
@@ -137,7 +138,8 @@ std::int64_t merge_near_points(Mesh& mesh, double distance) {
 
 class Repairer {
  public:
-  Repairer(Mesh& mesh, const std::string& where) : mesh_(mesh), where_(where) {}
+  Repairer(Mesh& mesh, const std::string& where, double wall)
+      : mesh_(mesh), where_(where), wall_(wall) {}
 
   Repair repair() {
     note(drop_repeated_corners(mesh_), "dropped", "degenerate face", "degenerate faces");
@@ -224,10 +226,16 @@ class Repairer {
     Mesh filled = mesh_;
     const ClosedHoles lids = close_holes(filled);
     if (lids.area > kMostInvented * area_) {
-      refuse(
-          fmt::format("is no closed surface: {} of its edges are open, and closing them would "
-                      "invent {:.0f} % of the surface it has; close the model in a mesh editor",
-                      open_, 100 * lids.area / area_));
+      if (!(wall_ > 0)) {
+        refuse(fmt::format(
+            "is no closed surface: {} of its edges are open, and closing them would invent {:.0f} "
+            "% "
+            "of the surface it has; close the model in a mesh editor, or give it a wall (--wall)",
+            open_, 100 * lids.area / area_));
+      }
+      add_wall(mesh_, wall_);
+      result_.notes.push_back("gave the open surface a wall");
+      return;
     }
     mesh_ = std::move(filled);
     result_.notes.push_back(
@@ -302,6 +310,7 @@ class Repairer {
 
   Mesh& mesh_;
   const std::string& where_;
+  double wall_;
   Repair result_;
   std::size_t open_ = 0;
   double area_ = 0;
@@ -309,6 +318,8 @@ class Repairer {
 
 }  // namespace
 
-Repair repair_mesh(Mesh& mesh, const std::string& where) { return Repairer(mesh, where).repair(); }
+Repair repair_mesh(Mesh& mesh, const std::string& where, double wall) {
+  return Repairer(mesh, where, wall).repair();
+}
 
 }  // namespace binderjet

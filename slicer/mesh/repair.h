@@ -20,7 +20,8 @@ struct Repair {
 // are merged, oriented, stitched and closed, each only if it helps; what was inside out is turned.
 //
 // Throws Error (kBadInput, at `where`) for what cannot be printed honestly: no volume, or a
-// surface whose lids would be over half as large as what is there.
-Repair repair_mesh(Mesh& mesh, const std::string& where);
+// surface whose lids would be over half as large as what is there. With `wall` > 0, in the mesh's
+// units, the latter gets a wall of this thickness instead.
+Repair repair_mesh(Mesh& mesh, const std::string& where, double wall = 0);
 
 }  // namespace binderjet

@@ -41,6 +41,22 @@ TEST(Separate, PutsNoDropOnPaper) {
   }
 }
 
+TEST(Separate, WhitensAllButTheMask) {
+  RunLayer mask(8);
+  for (const std::vector<int>& row : {std::vector<int>{}, {0, 3, 5, 8}, {2, 4}})
+    mask.append_row(row);
+  auto rgb = flat(8, 3, 90);
+  whiten_outside(mask, rgb);
+  for (int y = 0; y < 3; ++y) {
+    for (int x = 0; x < 8; ++x) {
+      for (int c = 0; c < 3; ++c) {
+        EXPECT_EQ(rgb[static_cast<std::size_t>(3 * (8 * y + x) + c)],
+                  mask.at(x, y) ? std::byte{90} : std::byte{255});
+      }
+    }
+  }
+}
+
 TEST(Separate, EvenToneStartsWithoutASeam) {
   // Plain error diffusion leaves the first rows of a light tone empty.
   const auto planes = separate_cmy(flat(400, 40, 240), 400, 40, 1);

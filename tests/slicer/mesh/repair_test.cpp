@@ -9,6 +9,7 @@
 #include <cmath>
 #include <string>
 
+#include "slicer/error.h"
 #include "slicer/mesh/boundary.h"
 #include "tests/slicer/mesh/samples.h"
 
@@ -102,6 +103,16 @@ TEST(Repair, DropsRepeatedFacesWhereTheSurfaceStaysClosed) {
   mesh.triangles.insert(mesh.triangles.end(), faces.begin(), faces.end());
   EXPECT_THAT(repair_mesh(mesh, "x").notes, ElementsAre("dropped 12 duplicate faces"));
   EXPECT_DOUBLE_EQ(signed_volume(mesh), 1.0);
+}
+
+TEST(Repair, GivesASheetAWallOnlyIfToldTo) {
+  Mesh sheet = box();
+  sheet.triangles.resize(2);  // one side, of area 1
+  Mesh copy = sheet;
+  EXPECT_THROW(repair_mesh(copy, "x"), Error);
+  EXPECT_THAT(repair_mesh(sheet, "x", 0.25).notes, Contains("gave the open surface a wall"));
+  EXPECT_EQ(count_edges(sheet).open, 0);
+  EXPECT_DOUBLE_EQ(signed_volume(sheet), 0.25);
 }
 
 TEST(Repair, MergesPointsOnlyIfThatIsNeeded) {
