@@ -1,0 +1,23 @@
+#!/usr/bin/env bash
+# SPDX-License-Identifier: GPL-3.0-or-later
+# The tests of transport and of the emulated printer once more with the address and the
+# undefined-behaviour sanitizer, as a user without rights; builds into build-sanitize/ (or $1).
+set -euo pipefail
+cd "$(dirname "$0")/.."
+build=${1:-build-sanitize}
+tests=(transport_test emulator_test fuzz_test)
+
+cmake -S . -B "$build" -G Ninja -DCMAKE_BUILD_TYPE=None \
+  -DCMAKE_CXX_FLAGS="-O1 -g1 -fsanitize=address,undefined -fno-sanitize-recover=undefined"
+cmake --build "$build" -j 2 -t "${tests[@]}"
+
+run=()
+if [ "$(id -u)" -eq 0 ]; then
+  run=(setpriv --reuid=nobody --regid=nogroup --clear-groups env HOME=/tmp)
+fi
+programs=$(realpath "$build")/tests
+cd "$(mktemp -d)"
+chmod 777 .
+for test in "${tests[@]}"; do
+  "${run[@]}" "$programs/$test" --gtest_brief=1
+done
