@@ -48,8 +48,7 @@ DensityField::DensityField(std::span<const RunLayer* const> window, const Grid& 
   std::array<int, 2> half{};
   for (std::size_t axis = 0; axis < 2; ++axis) {
     const int a = static_cast<int>(axis);
-    half[axis] =
-        static_cast<int>(std::lround(radius_mm / (kCell * grid.pitch_mm[axis]) - 0.5));
+    half[axis] = static_cast<int>(std::lround(radius_mm / (kCell * grid.pitch_mm[axis]) - 0.5));
     half[axis] = std::max(0, half[axis]);
     cell_vx_[axis] = kCell * grid.detail_vx[static_cast<std::size_t>(a)];
   }

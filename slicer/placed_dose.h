@@ -3,6 +3,7 @@
 // mask. A model without any of it prints the same anywhere.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <functional>
 #include <optional>
@@ -61,8 +62,8 @@ struct PlacedDose {
 // The middle of voxel (x, y) of a layer of a job that stands at `place`.
 inline Spot spot_at(const Grid& grid, const JobPlace& place, double x_vx, double y_vx, int layer) {
   return {place.origin_mm[0] + (x_vx + 0.5) * grid.voxel_mm(0),
-          place.origin_mm[1] + (y_vx + 0.5) * grid.voxel_mm(1),
-          (layer + 0.5) * grid.pitch_mm[2], layer, 0};
+          place.origin_mm[1] + (y_vx + 0.5) * grid.voxel_mm(1), (layer + 0.5) * grid.pitch_mm[2],
+          layer, 0};
 }
 
 }  // namespace binderjet
