@@ -2,10 +2,12 @@
 #include "slicer/calibrate/gauge_slots.h"
 
 #include <fmt/format.h>
+#include <oneapi/tbb/parallel_for.h>
 
 #include <algorithm>
 #include <cmath>
 #include <functional>
+#include <limits>
 
 #include "slicer/effects/model.h"
 
@@ -106,11 +108,35 @@ std::vector<Knob> knobs(const std::vector<EffectSpec>& declared) {
   return all;
 }
 
-Explanation explain(const Knob& knob, const Grid& grid, const std::vector<GaugeReading>& readings) {
-  std::vector<Misfit> misfits;
-  for (const double value : knob.values) {
-    misfits.push_back(misfit(readings, predict(knob.with(value), grid, readings)));
+// predicted[value][reading]; each reading with the value that fits the others best.
+double heldout_rms(const std::vector<GaugeReading>& readings,
+                   const std::vector<std::vector<double>>& predicted) {
+  double squares = 0;
+  for (std::size_t left_out = 0; left_out < readings.size(); ++left_out) {
+    double least = std::numeric_limits<double>::infinity();
+    double error = 0;
+    for (const std::vector<double>& one : predicted) {
+      double misfit = 0;
+      for (std::size_t i = 0; i < readings.size(); ++i) {
+        const double off = (readings[i].measured_mm - one[i]) / readings[i].uncertainty_mm;
+        misfit += i == left_out ? 0 : off * off;
+      }
+      if (misfit >= least) continue;
+      least = misfit;
+      error = readings[left_out].measured_mm - one[left_out];
+    }
+    squares += error * error;
   }
+  return std::sqrt(squares / static_cast<double>(readings.size()));
+}
+
+Explanation explain(const Knob& knob, const Grid& grid, const std::vector<GaugeReading>& readings) {
+  std::vector<std::vector<double>> predicted(knob.values.size());
+  oneapi::tbb::parallel_for(std::size_t{0}, knob.values.size(), [&](std::size_t i) {
+    predicted[i] = predict(knob.with(knob.values[i]), grid, readings);
+  });
+  std::vector<Misfit> misfits;
+  for (const std::vector<double>& one : predicted) misfits.push_back(misfit(readings, one));
   const auto best =
       std::min_element(misfits.begin(), misfits.end(),
                        [](const Misfit& a, const Misfit& b) { return a.squares < b.squares; });
@@ -119,7 +145,8 @@ Explanation explain(const Knob& knob, const Grid& grid, const std::vector<GaugeR
   out.value = knob.values[static_cast<std::size_t>(best - misfits.begin())];
   out.text = knob.text(out.value);
   out.effects = knob.with(out.value);
-  out.predicted_mm = predict(out.effects, grid, readings);
+  out.predicted_mm = predicted[static_cast<std::size_t>(best - misfits.begin())];
+  out.heldout_rms_mm = heldout_rms(readings, predicted);
   out.rms_mm = best->rms_mm;
   out.agrees = best->agrees;
   out.changed_numbers = knob.numbers;

@@ -43,7 +43,9 @@ struct Explanation {
   std::vector<EffectSpec> effects;   // the model with it
   std::vector<double> predicted_mm;  // per reading
   double rms_mm = 0;                 // of measured - predicted
-  bool agrees = false;               // with every reading, within its uncertainty
+  // The same where each reading is predicted with the value that fits the others best.
+  double heldout_rms_mm = 0;
+  bool agrees = false;  // with every reading, within its uncertainty
   int changed_numbers = 0;
 };
 
