@@ -128,7 +128,7 @@ std::string profiles_section(const Calibration& calibration) {
   return section("What the residual follows",
                  note("How much further out the surface lies than predicted. A flat line at 0 is a "
                       "model that misses nothing along this axis.") +
-                     "<div class=\"row\">\n" + charts + "</div>\n");
+                     "<div class=\"charts\">\n" + charts + "</div>\n");
 }
 
 std::string remaining_section(const Calibration& calibration) {

@@ -3,7 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <map>
+#include <cctype>
 
 #include "driver/calibration_report.h"
 #include "driver/gauge_report.h"
@@ -55,13 +55,22 @@ FoundEffect effect_of(const Rung& rung, const Ladder& ladder) {
   return effect;
 }
 
-// What stayed in; a term that another one took the place of has no columns any more.
+// What stayed in. A term that another one took the place of has no columns any more; what it
+// brought counts for its successor.
 std::vector<FoundEffect> effects_of(const Ladder& ladder) {
   std::vector<FoundEffect> effects;
+  double p = 1;
+  double left = 1;
   for (const Rung& rung : ladder.rungs) {
     if (!rung.accepted) continue;
     FoundEffect effect = effect_of(rung, ladder);
-    if (!effect.parameters.empty()) effects.push_back(std::move(effect));
+    p = std::min(p, rung.p);
+    left *= 1 - rung.gain;
+    if (effect.parameters.empty()) continue;
+    effect.p = p;
+    effect.heldout_gain = 1 - left;
+    effects.push_back(std::move(effect));
+    p = left = 1;
   }
   return effects;
 }
@@ -77,6 +86,7 @@ std::string verdict(const LengthFindings& found) {
     }
   }
   if (names.empty()) names.push_back("growth per batch");
+  names.front().front() = static_cast<char>(std::toupper(names.front().front()));
   return fmt::format(
       "Parts are off by {} mm (rms; median {}). {} bring{} that to {} mm (median {}) on parts that "
       "the fit did not see; readings of one dimension of one part scatter by {} mm.",
@@ -219,10 +229,13 @@ std::string page_of(const LengthFindings& found, const GaugeTable& table) {
   for (const LengthFindings::Profile& profile : found.profiles) {
     if (profile.labels.size() > 1) charts += profile_chart(profile);
   }
-  body += html::section("What the error follows", "<div class=\"row\">\n" + charts + "</div>\n");
+  body += html::section("What the error follows", "<div class=\"charts\">\n" + charts + "</div>\n");
   if (!ladder.columns.empty()) {
     body += html::section("What the parts lacked", effects_table(effects_of(ladder)));
-    body += html::section("The numbers", html::table(coefficient_rows(ladder), 2));
+    body +=
+        html::section("The numbers", "<details><summary>" + std::to_string(ladder.columns.size()) +
+                                         " numbers of what was kept</summary>\n" +
+                                         html::table(coefficient_rows(ladder), 2) + "</details>\n");
   }
   body += html::section(
       fmt::format("Growth is an offset in {} of {} batches", found.offset_batches(),

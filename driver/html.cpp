@@ -20,6 +20,8 @@ section { background: #fff; border: 1px solid var(--line); border-radius: .5rem;
 .note { color: #5b646b; font-size: .9rem; margin: .5rem 0 0; }
 .row { display: flex; flex-wrap: wrap; gap: 1.25rem; }
 .row > * { flex: 1 1 18rem; min-width: 0; }
+.charts { display: grid; grid-template-columns: repeat(auto-fill, minmax(18rem, 1fr)); gap: 1rem; }
+summary { cursor: pointer; color: #5b646b; }
 table { border-collapse: collapse; font-size: .92rem; width: 100%; }
 th, td { text-align: left; padding: .3rem .9rem .3rem 0; border-bottom: 1px solid var(--line);
   vertical-align: top; }

@@ -7,7 +7,6 @@
 #include <algorithm>
 #include <cmath>
 #include <functional>
-#include <limits>
 
 #include "slicer/effects/model.h"
 
@@ -108,23 +107,30 @@ std::vector<Knob> knobs(const std::vector<EffectSpec>& declared) {
   return all;
 }
 
+// The place of the least value; a grid prints many values alike, and of those it is the middle one.
+std::size_t least_of(const std::vector<double>& values) {
+  const double least = *std::min_element(values.begin(), values.end());
+  std::vector<std::size_t> places;
+  for (std::size_t i = 0; i < values.size(); ++i) {
+    if (values[i] <= least + 1e-9) places.push_back(i);
+  }
+  return places[places.size() / 2];
+}
+
 // predicted[value][reading]; each reading with the value that fits the others best.
 double heldout_rms(const std::vector<GaugeReading>& readings,
                    const std::vector<std::vector<double>>& predicted) {
   double squares = 0;
   for (std::size_t left_out = 0; left_out < readings.size(); ++left_out) {
-    double least = std::numeric_limits<double>::infinity();
-    double error = 0;
+    std::vector<double> misfits;
     for (const std::vector<double>& one : predicted) {
-      double misfit = 0;
+      misfits.push_back(0);
       for (std::size_t i = 0; i < readings.size(); ++i) {
         const double off = (readings[i].measured_mm - one[i]) / readings[i].uncertainty_mm;
-        misfit += i == left_out ? 0 : off * off;
+        misfits.back() += i == left_out ? 0 : off * off;
       }
-      if (misfit >= least) continue;
-      least = misfit;
-      error = readings[left_out].measured_mm - one[left_out];
     }
+    const double error = readings[left_out].measured_mm - predicted[least_of(misfits)][left_out];
     squares += error * error;
   }
   return std::sqrt(squares / static_cast<double>(readings.size()));
@@ -137,9 +143,9 @@ Explanation explain(const Knob& knob, const Grid& grid, const std::vector<GaugeR
   });
   std::vector<Misfit> misfits;
   for (const std::vector<double>& one : predicted) misfits.push_back(misfit(readings, one));
-  const auto best =
-      std::min_element(misfits.begin(), misfits.end(),
-                       [](const Misfit& a, const Misfit& b) { return a.squares < b.squares; });
+  std::vector<double> squares;
+  for (const Misfit& one : misfits) squares.push_back(one.squares);
+  const auto best = misfits.begin() + static_cast<std::ptrdiff_t>(least_of(squares));
   Explanation out;
   out.kind = knob.kind;
   out.value = knob.values[static_cast<std::size_t>(best - misfits.begin())];
