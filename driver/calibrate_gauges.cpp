@@ -35,10 +35,13 @@ std::string slots_profile(const Profile& declared, const SlotFindings& found,
     notes.push_back(fmt::format("Could as well be {}: {} ({:.2f} to {:.2f} times).", rival.kind,
                                 rival.text, rival.low, rival.high));
   }
-  if (!found.discriminators.empty()) {
-    const Discriminator& d = found.discriminators.front();
-    notes.push_back(fmt::format("To tell: a {} comes out {:.2f} mm wide here, {:.2f} mm there.",
-                                d.gauge, d.predicted_mm[0], d.predicted_mm[1]));
+  for (const std::string wanted : {"wall", "outer width"}) {
+    const auto d =
+        std::find_if(found.discriminators.begin(), found.discriminators.end(),
+                     [&](const Discriminator& one) { return one.gauge.rfind(wanted, 0) == 0; });
+    if (d == found.discriminators.end()) continue;
+    notes.push_back(fmt::format("To tell: a print's {} is {:.2f} mm here, {:.2f} mm there.",
+                                d->gauge, d->predicted_mm[0], d->predicted_mm[1]));
   }
   return calibrated_profile(
       declared, declared.name + " calibrated",

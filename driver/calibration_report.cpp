@@ -169,8 +169,11 @@ std::string effects_table(const std::vector<FoundEffect>& effects) {
   for (const FoundEffect& effect : effects) {
     std::vector<std::string> rivals;
     for (const std::string& rival : effect.rivals) rivals.push_back(readable(rival));
+    constexpr std::size_t kMostNumbers = 8;  // more are for a list of their own
     rows.push_back({readable(effect.kind), text_of(effect.covariate),
-                    numbers_text(effect.parameters),
+                    effect.parameters.size() <= kMostNumbers
+                        ? numbers_text(effect.parameters)
+                        : fmt::format("{} numbers", effect.parameters.size()),
                     rivals.empty() ? "-" : fmt::format("{}", fmt::join(rivals, ", ")),
                     effect.p < 0.001 ? "< 0.001" : fmt::format("{:.3f}", effect.p),
                     fmt::format("{:.0f} %", 100 * effect.heldout_gain)});

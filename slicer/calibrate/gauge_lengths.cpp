@@ -195,6 +195,19 @@ std::function<std::string(const Block&, std::size_t)> reading_label(std::size_t 
   };
 }
 
+// Less the mean over its batch and axis, so that a column cannot stand in for growth.
+TermForm centred(TermForm form, const Readings& readings) {
+  std::map<std::pair<std::string, std::size_t>, std::vector<Eigen::Index>> cells;
+  for (std::size_t i = 0; i < readings.block.size(); ++i) {
+    cells[{readings.block[i]->batch, readings.axis[i]}].push_back(static_cast<Eigen::Index>(i));
+  }
+  for (const auto& [cell, rows] : cells) {
+    const MatrixXd own = form.columns(rows, Eigen::all);
+    form.columns(rows, Eigen::all) = own.rowwise() - own.colwise().mean();
+  }
+  return form;
+}
+
 Term reading_term(const Readings& readings, const std::vector<std::size_t>& axes,
                   const std::string& first, bool per_batch) {
   Term term{per_batch ? "layer shift per batch" : "layer shift", {}};
@@ -204,7 +217,8 @@ Term reading_term(const Readings& readings, const std::vector<std::size_t>& axes
       const std::string key = label(block, axis);
       return key.empty() || !per_batch ? key : key + ", batch " + block.batch;
     };
-    term.forms.push_back(readings.form(fmt::format("along {}", kAxes[a]), per, one));
+    term.forms.push_back(
+        centred(readings.form(fmt::format("along {}", kAxes[a]), per, one), readings));
   }
   return term;
 }
