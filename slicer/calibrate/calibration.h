@@ -21,8 +21,8 @@ struct MeasuredJob {
   std::string name;  // for messages and the report
   Grid grid;
   JobPlace place;
-  int first_layer = 0;                    // the number of masks[0]
-  std::vector<Shared<RunLayer>> masks;    // at the printer grid
+  int first_layer = 0;                  // the number of masks[0]
+  std::vector<Shared<RunLayer>> masks;  // at the printer grid
   // Each replicate has one layer per mask, at the voxel grid in x and y, registered to the masks.
   std::vector<std::vector<Shared<RunLayer>>> prints;
   // How far, at the surface, one print's reading is known: 0 for stacks on the voxel grid.
@@ -67,10 +67,10 @@ struct BeforeAfter {
 
 // The residual along one coordinate, in mm that the surface lies further out than predicted.
 struct ResidualProfile {
-  std::string name;                 // "x", "y", "layer", "edge distance", ...
-  std::string unit;                 // "mm", "", "deg"
-  std::vector<double> centers;      // of bins, ascending
-  std::vector<double> before_mm;    // means; as many as centers
+  std::string name;               // "x", "y", "layer", "edge distance", ...
+  std::string unit;               // "mm", "", "deg"
+  std::vector<double> centers;    // of bins, ascending
+  std::vector<double> before_mm;  // means; as many as centers
   std::vector<double> after_mm;
   std::vector<std::int64_t> points;  // how many surface points are in each bin
 };
@@ -85,7 +85,7 @@ struct Calibration {
   std::string verdict;  // "effect", "none" or "unexplained"
   std::vector<FoundEffect> effects;
   std::optional<Remaining> remaining;
-  std::vector<BeforeAfter> scores;      // the first is what `before` and `after` of the JSON say
+  std::vector<BeforeAfter> scores;  // the first is what `before` and `after` of the JSON say
   std::vector<ResidualProfile> profiles;
   std::vector<EffectSpec> before_model;  // as declared
   std::vector<EffectSpec> after_model;   // refitted, with the effects found
