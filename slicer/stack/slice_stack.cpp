@@ -93,9 +93,8 @@ std::string StackWriter::image_name(int index) const {
 }
 
 void StackWriter::write_rgb(int index, std::span<const std::byte> rgb) const {
-  const std::string name = fmt::sprintf(info_.files, info_.first + index);
-  write_file(part_ + "/" + name, encode_png_rgb(rgb, info_.size[0], info_.size[1],
-                                                {info_.pitch_mm[0], info_.pitch_mm[1]}));
+  write_file(image_name(index), encode_png_rgb(rgb, info_.size[0], info_.size[1],
+                                               {info_.pitch_mm[0], info_.pitch_mm[1]}));
 }
 
 void StackWriter::finish() {
