@@ -59,6 +59,13 @@ struct PlacedDose {
   }
 };
 
+// How far a spot is from the side of the job's box; 0 outside.
+inline double edge_distance(const JobPlace& place, const Spot& spot) {
+  const double x = spot.x_mm - place.origin_mm[0];
+  const double y = spot.y_mm - place.origin_mm[1];
+  return std::max(0.0, std::min({x, place.size_mm[0] - x, y, place.size_mm[1] - y}));
+}
+
 // The middle of voxel (x, y) of a layer of a job that stands at `place`.
 inline Spot spot_at(const Grid& grid, const JobPlace& place, double x_vx, double y_vx, int layer) {
   return {place.origin_mm[0] + (x_vx + 0.5) * grid.voxel_mm(0),

@@ -25,13 +25,16 @@ double need(const EffectSpec& spec, const std::string& name, std::size_t index =
   return spec.number(name, index);
 }
 
-Place place_of(const EffectSpec& spec) {
+Place place_of(const EffectSpec& spec, const JobPlace& job) {
   const std::string& axis = spec.words.at("axis");
   if (axis == "x") return [](const Spot& spot) { return spot.x_mm; };
   if (axis == "y") return [](const Spot& spot) { return spot.y_mm; };
   if (axis == "z") return [](const Spot& spot) { return spot.z_mm; };
   if (axis == "layer") return [](const Spot& spot) { return static_cast<double>(spot.layer); };
   if (axis == "density") return [](const Spot& spot) { return spot.density; };
+  if (axis == "edge_distance") {
+    return [job](const Spot& spot) { return edge_distance(job, spot); };
+  }
   if (axis == "direction") {
     const double angle = need(spec, "direction_deg") * std::numbers::pi / 180;
     return [x = std::cos(angle), y = std::sin(angle)](const Spot& spot) {
@@ -78,7 +81,7 @@ std::pair<Of, double> shape_of(const EffectSpec& spec) {
 
 void add(const EffectSpec& spec, const Grid&, ModelForm& form) {
   if (spec.words.at("axis") == "density") form.ask_density(need(spec, "radius_mm"));
-  const Place place = place_of(spec);
+  const Place place = place_of(spec, form.place);
   const auto [of, most] = shape_of(spec);
   const std::string& acts = spec.words.at("acts");
   if (acts == "dose") {
@@ -104,7 +107,7 @@ EffectKind empirical_kind() {
   constexpr double kFar = 10000;
   return {"empirical",
           {{"acts", {"dose", "shift_x", "shift_y"}},
-           {"axis", {"x", "y", "z", "layer", "direction", "density", "position"}},
+           {"axis", {"x", "y", "z", "layer", "direction", "density", "edge_distance", "position"}},
            {"form", {"trend", "periodic", "step", "window", "local"}}},
           {{"amount", 1, -5, 5, true},
            {"wave", 2, -5, 5, true},
