@@ -49,13 +49,6 @@ std::string slots_profile(const Profile& declared, const SlotFindings& found,
       first.effects);
 }
 
-std::string file_name(std::string name) {
-  std::transform(name.begin(), name.end(), name.begin(), [](unsigned char c) {
-    return std::isalnum(c) != 0 ? static_cast<char>(std::tolower(c)) : '-';
-  });
-  return name;
-}
-
 }  // namespace
 
 void calibrate_gauges(const std::string& profile, const std::string& gauges,
@@ -71,7 +64,7 @@ void calibrate_gauges(const std::string& profile, const std::string& gauges,
         trace_slots(read_slots(table), declared.effects, declared.grid(std::nullopt));
     summary = summarize(found, table, declared.effects);
     if (!found.explanations.empty() && found.explanations.front().agrees) {
-      written = file_name(declared.name) + ".calibrated.toml";
+      written = calibrated_file_name(declared);
       write_text(folder + "/" + written, slots_profile(declared, found, table));
     }
   } else if (has_lengths(table)) {

@@ -3,6 +3,8 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <cctype>
 #include <sstream>
 
 #include "slicer/error.h"
@@ -86,6 +88,14 @@ std::string calibrated_profile(const Profile& declared, const std::string& name,
                 "its effects cannot be replaced; write each as an [[effects]] table of its own");
   }
   return text;
+}
+
+std::string calibrated_file_name(const Profile& declared) {
+  std::string name = declared.name;
+  std::transform(name.begin(), name.end(), name.begin(), [](unsigned char c) {
+    return std::isalnum(c) != 0 ? static_cast<char>(std::tolower(c)) : '-';
+  });
+  return name + ".calibrated.toml";
 }
 
 }  // namespace binderjet

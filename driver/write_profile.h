@@ -19,4 +19,7 @@ std::string calibrated_profile(const Profile& declared, const std::string& name,
                                const std::string& source, std::span<const std::string> notes,
                                const std::vector<EffectSpec>& effects);
 
+// What such a profile's file is called: "z450.calibrated.toml".
+std::string calibrated_file_name(const Profile& declared);
+
 }  // namespace binderjet
