@@ -68,6 +68,7 @@ MeasuredJob read_job(const std::string& name, const std::string& path,
       write_scan_stack(path_of_scan, job.grid.pitch_mm[2], stack);
     }
     Measured measured = read_measured(stack, frame, predicted);
+    job.scanned = job.scanned || measured.registration.has_value();
     std::vector<Shared<RunLayer>> layers;
     for (RunLayer& layer : measured.layers) {
       layers.push_back(std::make_shared<const RunLayer>(std::move(layer)));

@@ -147,8 +147,8 @@ std::string measured_section(const MeasuredJob& job) {
       job.name, job.layers(), job.place.size_mm[0], job.place.size_mm[1], height_mm,
       job.prints.size(), job.prints.size() == 1 ? "" : "s", job.grid.voxel_mm(0),
       job.grid.voxel_mm(1));
-  if (job.reading_mm > 0) {
-    text += fmt::format(" The scan's surface is known to {:.3f} mm.", job.reading_mm);
+  if (job.scanned) {
+    text += " They are scans: what is left of their shift, turn and blur is fitted along.";
   }
   return section("What was measured", "<p>" + html::escaped(text) + "</p>\n");
 }

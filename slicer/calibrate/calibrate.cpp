@@ -99,7 +99,8 @@ class Calibrator {
     std::vector<Candidate> scan = scan_candidates(job_, model_);
     candidates.insert(candidates.end(), scan.begin(), scan.end());
     const auto points = surface_points(job_, model_, seen_, kFitPoints, kPairReachMm);
-    const auto known = slopes(job_, model_, points, numbers_of_taken());
+    auto known = slopes(job_, model_, points, numbers_of_taken());
+    for (auto& column : scanner_columns(job_, model_, points)) known.push_back(std::move(column));
     const std::vector<Choice> choices = choose(job_, model_, points, known, candidates);
     if (choices.empty()) return false;
     const Choice& best = choices.front();
@@ -116,7 +117,8 @@ class Calibrator {
   // The regression is linear and blind to what was fused or lost; the real forward model decides
   // among those that it cannot part by far.
   bool take_best_fit(const std::vector<Candidate>& candidates, const std::vector<Choice>& choices) {
-    constexpr std::size_t kMostTried = 4;
+    constexpr std::size_t kMostTried = 3;
+    constexpr int kTrialRounds = 3;
     struct Fitted {
       const Candidate* candidate;
       const Choice* choice;
@@ -127,7 +129,8 @@ class Calibrator {
     for (std::size_t i = 0; i < std::min(kMostTried, choices.size()); ++i) {
       const Candidate& candidate = candidates[choices[i].winner];
       step_(fmt::format("fitting {}", candidate.kind));
-      Model model = refit_with_taken(candidate.apply(choices[i].coefficients), candidate.effect);
+      Model model = refit_with_taken(candidate.apply(choices[i].coefficients), candidate.effect,
+                                     kTrialRounds);
       const double wrong = wrong_share(job_, model, seen_);
       fitted.push_back({&candidate, &choices[i], std::move(model), wrong});
     }
@@ -137,6 +140,8 @@ class Calibrator {
     for (std::size_t i = 1; i < fitted.size(); ++i) {
       if (fitted[i].wrong < kClearly * fitted[best].wrong) best = i;
     }
+    fitted[best].model = refit_with_taken(std::move(fitted[best].model),
+                                          fitted[best].candidate->effect, kLastRounds);
     const double wrong = wrong_share(job_, fitted[best].model, held_);
     const bool enough = wrong_ - wrong >= limits_.least_gain * wrong_ &&
                         wrong_ - wrong >= limits_.least_gain / 2 * first_wrong_;
@@ -165,13 +170,15 @@ class Calibrator {
     return true;
   }
 
-  Model refit_with_taken(Model model, std::size_t effect) const {
-    model = refit(job_, model, free_numbers(model, effect), seen_);
+  static constexpr int kLastRounds = 4;
+
+  Model refit_with_taken(Model model, std::size_t effect, int rounds) const {
+    model = refit(job_, model, free_numbers(model, effect), seen_, rounds);
     if (taken_.empty()) return model;
     std::vector<FreeNumber> numbers = numbers_of_taken();
     const auto own = free_numbers(model, effect);
     numbers.insert(numbers.end(), own.begin(), own.end());
-    return refit(job_, model, numbers, seen_);
+    return refit(job_, model, numbers, seen_, rounds);
   }
 
   // All numbers together, those that were declared too.
@@ -182,7 +189,7 @@ class Calibrator {
       const auto own = free_numbers(model_, effect);
       numbers.insert(numbers.end(), own.begin(), own.end());
     }
-    Model all = refit(job_, model_, numbers, seen_);
+    Model all = refit(job_, model_, numbers, seen_, kLastRounds);
     // What was declared is believed unless the print clearly says otherwise.
     constexpr double kClearly = 0.97;
     if (wrong_share(job_, all, seen_) < kClearly * wrong_share(job_, model_, seen_) &&

@@ -25,8 +25,8 @@ struct MeasuredJob {
   std::vector<Shared<RunLayer>> masks;  // at the printer grid
   // Each replicate has one layer per mask, at the voxel grid in x and y, registered to the masks.
   std::vector<std::vector<Shared<RunLayer>>> prints;
-  // How far, at the surface, one print's reading is known: 0 for stacks on the voxel grid.
-  double reading_mm = 0;
+  // The prints come from a scanner: they may still be a little shifted, turned and blurred.
+  bool scanned = false;
 
   int layers() const { return static_cast<int>(masks.size()); }
 };

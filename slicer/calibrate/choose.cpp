@@ -349,7 +349,7 @@ std::vector<Choice> choose(const MeasuredJob& job, const Model& model,
   });
   const Tried& best = tried[order.front()];
   // Of those that do as well as the best the simplest goes first.
-  constexpr double kWorthTrying = 0.75;
+  constexpr double kWorthTrying = 0.8;
   std::vector<std::size_t> equals;
   std::vector<std::size_t> others_worth;
   for (const std::size_t i : order) {

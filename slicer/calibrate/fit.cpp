@@ -104,6 +104,40 @@ std::vector<std::vector<float>> slopes(const MeasuredJob& job, const Model& mode
   return out;
 }
 
+std::vector<std::vector<float>> scanner_columns(const MeasuredJob& job, const Model& model,
+                                                const std::vector<SurfacePoint>& points) {
+  if (!job.scanned) return {};
+  constexpr double kStepVx = 0.5;
+  std::array<std::vector<double>, 2> ahead;
+  std::array<std::vector<double>, 2> behind;
+  for (std::size_t axis = 0; axis < 2; ++axis) {
+    std::array<double, 2> step{};
+    step[axis] = kStepVx;
+    ahead[axis] = margins_at(job, model, points, step);
+    behind[axis] = margins_at(job, model, points, {-step[0], -step[1]});
+  }
+  // Blur, as what smoothing by about its size would change.
+  constexpr double kBlurMm = 0.06;
+  const std::vector<double> margin = margins_at(job, model, points);
+  const std::vector<double> blurred =
+      margins_at(job, with_effect(model, {"rounding", {}, {{"radius_mm", {kBlurMm}}}}), points);
+
+  std::vector<std::vector<float>> out(4);
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    const double by_x = (behind[0][i] - ahead[0][i]) / job.grid.voxel_mm(0);
+    const double by_y = (behind[1][i] - ahead[1][i]) / job.grid.voxel_mm(1);
+    const DosePlace place = points[i].place();
+    const Spot spot = spot_at(job.grid, job.place, place.x_vx, place.y_vx, 0);
+    const double turn =
+        by_y * (spot.x_mm - job.place.center_mm(0)) - by_x * (spot.y_mm - job.place.center_mm(1));
+    out[0].push_back(static_cast<float>(by_x));
+    out[1].push_back(static_cast<float>(by_y));
+    out[2].push_back(static_cast<float>(turn));
+    out[3].push_back(static_cast<float>(blurred[i] - margin[i]));
+  }
+  return out;
+}
+
 double wrong_share(const MeasuredJob& job, const Model& model, const LayerChoice& layers) {
   const auto printed = print_layers(job, model, layers);
   std::int64_t wrong = 0;
@@ -119,14 +153,16 @@ double wrong_share(const MeasuredJob& job, const Model& model, const LayerChoice
 }
 
 Model refit(const MeasuredJob& job, Model model, const std::vector<FreeNumber>& numbers,
-            const LayerChoice& layers) {
+            const LayerChoice& layers, int rounds) {
   double wrong = wrong_share(job, model, layers);
-  constexpr int kMostRounds = 6;
   constexpr double kEnough = 0.003;  // a smaller relative gain ends the fit
-  for (int round = 0; round < kMostRounds; ++round) {
+  for (int round = 0; round < rounds; ++round) {
     const auto points = surface_points(job, model, layers, kFitPoints, kPairReachMm);
     if (points.size() < 10 * numbers.size() + 100) break;
-    const Eigen::VectorXd move = gauss_newton(slopes(job, model, points, numbers), points);
+    auto columns = slopes(job, model, points, numbers);
+    // The scanner's share is fitted along and forgotten.
+    for (auto& column : scanner_columns(job, model, points)) columns.push_back(std::move(column));
+    const Eigen::VectorXd move = gauss_newton(columns, points);
     const double before = wrong;
     for (const double damping : {1.0, 0.5, 0.2}) {
       Model next = model;

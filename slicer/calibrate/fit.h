@@ -25,12 +25,18 @@ std::vector<std::vector<float>> slopes(const MeasuredJob& job, const Model& mode
                                        const std::vector<SurfacePoint>& points,
                                        const std::vector<FreeNumber>& numbers);
 
+// What a scanner adds and no printer is to blame for: the rest of a shift and of a turn, blur.
+// One column each; none for prints that were not scanned.
+std::vector<std::vector<float>> scanner_columns(const MeasuredJob& job, const Model& model,
+                                                const std::vector<SurfacePoint>& points);
+
 // |printed xor measured| / |measured| over the chosen layers, mean of the replicates.
 double wrong_share(const MeasuredJob& job, const Model& model, const LayerChoice& layers);
 
-// The model with these numbers refitted on the chosen layers; never worse there than it was.
+// The model with these numbers refitted on the chosen layers in at most `rounds` steps; never worse
+// there than it was.
 Model refit(const MeasuredJob& job, Model model, const std::vector<FreeNumber>& numbers,
-            const LayerChoice& layers);
+            const LayerChoice& layers, int rounds);
 
 // How many points a fit looks at, and how far from the model's edge a measured one may be.
 constexpr int kFitPoints = 40000;

@@ -93,10 +93,10 @@ std::vector<Printer> nameless() {
   };
   out.push_back(named("damp spot", {}, {"position"}));
   out.back().gain = [](const At& at) {
-    return 1 + 0.35 * std::exp(-((at.x - 7) * (at.x - 7) + (at.y - 16) * (at.y - 16)) / 12);
+    return 1 + 0.35 * std::exp(-((at.x - 7) * (at.x - 7) + (at.y - 4) * (at.y - 4)) / 8);
   };
   out.push_back(named("half of the bed", {}, {"x"}));
-  out.back().gain = [](const At& at) { return at.x > 13.3 ? 1.12 : 1.0; };
+  out.back().gain = [](const At& at) { return at.x > 5.3 ? 1.12 : 1.0; };
   out.push_back(named("belt wave", {}, {"x", "y"}));
   out.back().shift_mm = [](const At& at) {
     return std::array<double, 2>{0.05 * std::sin(kTurn * at.y / 6.7), 0};
