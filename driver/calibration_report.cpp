@@ -8,6 +8,7 @@
 #include "driver/files.h"
 #include "driver/html.h"
 #include "driver/layer_pictures.h"
+#include "driver/print_colors.h"
 
 namespace binderjet {
 namespace {
@@ -32,8 +33,12 @@ std::string readable(std::string kind) {
 }
 
 std::string name_of(const FoundEffect& effect) {
-  return effect.kind == "empirical" ? "an effect without a name, by " + text_of(effect.covariate)
-                                    : readable(effect.kind);
+  std::string name = effect.kind == "empirical"
+                         ? "one without a name, which follows " + text_of(effect.covariate)
+                         : readable(effect.kind);
+  if (effect.rivals.empty()) return name;
+  for (const std::string& rival : effect.rivals) name += " or " + readable(rival);
+  return name + " (this print cannot tell)";
 }
 
 std::string text_of(const EffectSpec& effect) {
@@ -95,25 +100,28 @@ std::string scores_section(const Calibration& calibration) {
                      note("Both models predict the same data, which the fit did not see."));
 }
 
+std::string swatch(const Rgb& color, const std::string& text) {
+  return fmt::format(
+      "<span class=\"key\"><i class=\"swatch\" style=\"background: rgb({}, {}, {})\"></i>{}</span>",
+      color[0], color[1], color[2], html::escaped(text));
+}
+
 std::string pictures_section(const Calibration& calibration, const MeasuredJob& job) {
   const LayerPictures pictures =
       picture_layer(job, calibration.before_model, calibration.after_model);
   const auto one = [&](const std::vector<std::byte>& png, const std::string& caption) {
     return html::picture(png, pictures.width_mm, pictures.height_mm, caption);
   };
-  return section(
-      fmt::format("Layer {}, where the change shows most", pictures.layer),
-      "<div class=\"row\">\n" +
-          one(pictures.before,
-              "Against the declared model: wrong " + percent(pictures.wrong_before)) +
-          one(pictures.after,
-              "Against the calibrated model: wrong " + percent(pictures.wrong_after)) +
-          "</div>\n<p class=\"note\"><span class=\"key\"><i class=\"swatch\" "
-          "style=\"background: #bebebe\"></i>printed as predicted</span><span class=\"key\"><i "
-          "class=\"swatch\" style=\"background: #ff786e\"></i>missing: predicted, not "
-          "printed</span><span class=\"key\"><i class=\"swatch\" style=\"background: "
-          "#78a0ff\"></i>extra: printed, not predicted</span></p>\n" +
-          note("x to the right, y down, as in the stack's images."));
+  return section(fmt::format("Layer {}, where the change shows most", pictures.layer),
+                 "<div class=\"row\">\n" +
+                     one(pictures.before,
+                         "Against the declared model: wrong " + percent(pictures.wrong_before)) +
+                     one(pictures.after,
+                         "Against the calibrated model: wrong " + percent(pictures.wrong_after)) +
+                     "</div>\n<p class=\"note\">" + swatch(kCorrectColor, "printed as predicted") +
+                     swatch(kMissingColor, "missing: predicted, not printed") +
+                     swatch(kExtraColor, "extra: printed, not predicted") + "</p>\n" +
+                     note("x to the right, y down, as in the stack's images."));
 }
 
 std::string profiles_section(const Calibration& calibration) {

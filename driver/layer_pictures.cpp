@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <array>
 
+#include "driver/print_colors.h"
 #include "slicer/effects/model.h"
 #include "slicer/rows.h"
 #include "slicer/stack/indexed_png.h"
@@ -14,8 +15,7 @@ namespace binderjet {
 namespace {
 
 enum Color : std::uint8_t { kPowder, kCorrect, kMissing, kExtra };
-constexpr std::array<Rgb, 4> kPalette{
-    {{255, 255, 255}, {190, 190, 190}, {255, 120, 110}, {120, 160, 255}}};
+constexpr std::array<Rgb, 4> kPalette{kPowderColor, kCorrectColor, kMissingColor, kExtraColor};
 
 RunLayer predicted(const PrinterModel& model, const MeasuredJob& job, int index) {
   std::vector<const RunLayer*> window;

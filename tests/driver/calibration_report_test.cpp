@@ -79,7 +79,8 @@ TEST(CalibrationReport, IsWellFormedAndFetchesNothing) {
 
 TEST(CalibrationReport, SaysVerdictErrorsRivalsAndWhatRemains) {
   const std::string page = report(found(), job_printed_at(0.3));
-  EXPECT_THAT(page, HasSubstr("The declared model lacks one effect: threshold."));
+  EXPECT_THAT(page, HasSubstr("The declared model lacks one effect: threshold or bleed shell (this "
+                              "print cannot tell)."));
   EXPECT_THAT(page, HasSubstr("wrong voxels fall from 3.10 % to 1.20 %; two prints of the same job "
                               "differ by 1.00 %"));
   EXPECT_THAT(page, HasSubstr("bleed shell"));
