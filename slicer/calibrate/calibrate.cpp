@@ -49,12 +49,14 @@ class Calibrator {
         held_(held_out_layers(job)),
         seen_(others(held_)),
         model_(declared),
+        declared_effects_(declared.size()),
         first_wrong_(wrong_share(job, declared, held_)),
         wrong_(first_wrong_) {}
 
   void run() {
     while (static_cast<int>(taken_.size()) < limits_.most_effects && add_one()) {
     }
+    drop_superseded();
     if (!taken_.empty()) refit_all();
   }
 
@@ -98,7 +100,7 @@ class Calibrator {
     std::vector<Candidate> candidates = named_candidates(job_, model_);
     std::vector<Candidate> scan = scan_candidates(job_, model_);
     candidates.insert(candidates.end(), scan.begin(), scan.end());
-    const auto points = surface_points(job_, model_, seen_, kFitPoints, kPairReachMm);
+    const auto points = surface_points(job_, model_, seen_, kChoicePoints, kPairReachMm);
     auto known = slopes(job_, model_, points, numbers_of_taken());
     for (auto& column : scanner_columns(job_, model_, points)) known.push_back(std::move(column));
     const std::vector<Choice> choices = choose(job_, model_, points, known, candidates);
@@ -159,7 +161,10 @@ class Calibrator {
       constexpr double kRival = 1.015;
       if (other.candidate->kind == candidate.kind) continue;
       if (other.choice->equal && other.wrong <= kRival * fitted[best].wrong) {
-        taken.found.rivals.push_back(other.candidate->kind);
+        std::vector<std::string>& rivals = taken.found.rivals;
+        if (std::find(rivals.begin(), rivals.end(), other.candidate->kind) == rivals.end()) {
+          rivals.push_back(other.candidate->kind);
+        }
       }
     }
     taken.effect = candidate.effect;
@@ -173,12 +178,43 @@ class Calibrator {
   static constexpr int kLastRounds = 4;
 
   Model refit_with_taken(Model model, std::size_t effect, int rounds) const {
-    model = refit(job_, model, free_numbers(model, effect), seen_, rounds);
-    if (taken_.empty()) return model;
     std::vector<FreeNumber> numbers = numbers_of_taken();
     const auto own = free_numbers(model, effect);
     numbers.insert(numbers.end(), own.begin(), own.end());
     return refit(job_, model, numbers, seen_, rounds);
+  }
+
+  // What was found first may stand for a part of what was found later; it goes if the others do as
+  // well without it.
+  void drop_superseded() {
+    for (std::size_t i = 0; taken_.size() > 1 && i < taken_.size();) {
+      const std::size_t place = taken_[i].effect;
+      Model without = model_;
+      if (place < declared_effects_) {
+        ++i;  // a declared effect with another number
+        continue;
+      }
+      without.erase(without.begin() + static_cast<std::ptrdiff_t>(place));
+      std::vector<FreeNumber> numbers;
+      for (std::size_t k = 0; k < taken_.size(); ++k) {
+        const std::size_t effect = taken_[k].effect - (taken_[k].effect > place ? 1 : 0);
+        if (k == i) continue;
+        const auto own = free_numbers(without, effect);
+        numbers.insert(numbers.end(), own.begin(), own.end());
+      }
+      step_(fmt::format("trying without {}", taken_[i].found.kind));
+      without = refit(job_, std::move(without), numbers, seen_, kLastRounds);
+      const double wrong = wrong_share(job_, without, held_);
+      if (wrong - wrong_ > limits_.least_gain / 2 * wrong) {
+        ++i;
+        continue;
+      }
+      model_ = std::move(without);
+      wrong_ = wrong;
+      taken_.erase(taken_.begin() + static_cast<std::ptrdiff_t>(i));
+      for (Taken& taken : taken_) taken.effect -= taken.effect > place ? 1 : 0;
+      i = 0;
+    }
   }
 
   // All numbers together, those that were declared too.
@@ -204,6 +240,7 @@ class Calibrator {
   LayerChoice held_;
   LayerChoice seen_;
   Model model_;
+  std::size_t declared_effects_;
   double first_wrong_;
   double wrong_;
   std::vector<Taken> taken_;

@@ -15,7 +15,7 @@ struct CalibrationLimits {
   double most_p = 0.01;
   double least_share = 0.015;
   double least_gain = 0.04;
-  int most_effects = 3;
+  int most_effects = 4;
 };
 
 // `checks` are prints of the same printer that the fit never sees. `step` is told what is being

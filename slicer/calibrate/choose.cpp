@@ -305,6 +305,19 @@ bool alike(const Tried& best, const Tried& other) {
   return sum <= std::max(error, kAlike * total);
 }
 
+// A step or a window with nearly all points on one side says nothing of its place.
+bool covers_all(const Candidate& candidate, const Field& field) {
+  const std::string& form = candidate.covariate.form;
+  if (candidate.columns.front().basis == Column::Basis::kModel) return false;
+  if (form != "step" && form != "window") return false;
+  if (candidate.kind == "first_layers" || candidate.kind == "layer_shift_low") return false;
+  constexpr double kMost = 0.95;
+  const auto inside = std::count_if(field.spots.begin(), field.spots.end(), [&](const Spot& spot) {
+    return candidate.columns.front().of(spot) > 0.5;
+  });
+  return static_cast<double>(inside) > kMost * static_cast<double>(field.spots.size());
+}
+
 // What makes two candidates the same finding.
 std::string finding(const Candidate& candidate) {
   return candidate.kind + candidate.covariate.axis + candidate.covariate.form;
@@ -327,6 +340,7 @@ std::vector<Choice> choose(const MeasuredJob& job, const Model& model,
 
   std::vector<Tried> tried(candidates.size());
   oneapi::tbb::parallel_for(std::size_t{0}, candidates.size(), [&](std::size_t i) {
+    if (covers_all(candidates[i], field)) return;
     std::vector<std::vector<float>> columns;
     for (const Column& column : candidates[i].columns) {
       columns.push_back(values(column, job, field, points, margin));

@@ -107,33 +107,30 @@ std::vector<std::vector<float>> slopes(const MeasuredJob& job, const Model& mode
 std::vector<std::vector<float>> scanner_columns(const MeasuredJob& job, const Model& model,
                                                 const std::vector<SurfacePoint>& points) {
   if (!job.scanned) return {};
-  constexpr double kStepVx = 0.5;
+  // About as far as a scanner blurs: the differences at both sides are shift and, added, blur.
+  constexpr double kStepMm = 0.06;
   std::array<std::vector<double>, 2> ahead;
   std::array<std::vector<double>, 2> behind;
   for (std::size_t axis = 0; axis < 2; ++axis) {
     std::array<double, 2> step{};
-    step[axis] = kStepVx;
+    step[axis] = kStepMm / job.grid.voxel_mm(static_cast<int>(axis));
     ahead[axis] = margins_at(job, model, points, step);
     behind[axis] = margins_at(job, model, points, {-step[0], -step[1]});
   }
-  // Blur, as what smoothing by about its size would change.
-  constexpr double kBlurMm = 0.06;
   const std::vector<double> margin = margins_at(job, model, points);
-  const std::vector<double> blurred =
-      margins_at(job, with_effect(model, {"rounding", {}, {{"radius_mm", {kBlurMm}}}}), points);
-
   std::vector<std::vector<float>> out(4);
   for (std::size_t i = 0; i < points.size(); ++i) {
-    const double by_x = (behind[0][i] - ahead[0][i]) / job.grid.voxel_mm(0);
-    const double by_y = (behind[1][i] - ahead[1][i]) / job.grid.voxel_mm(1);
+    const double by_x = (behind[0][i] - ahead[0][i]) / (2 * kStepMm);
+    const double by_y = (behind[1][i] - ahead[1][i]) / (2 * kStepMm);
     const DosePlace place = points[i].place();
     const Spot spot = spot_at(job.grid, job.place, place.x_vx, place.y_vx, 0);
     const double turn =
         by_y * (spot.x_mm - job.place.center_mm(0)) - by_x * (spot.y_mm - job.place.center_mm(1));
+    const double blur = ahead[0][i] + behind[0][i] + ahead[1][i] + behind[1][i] - 4 * margin[i];
     out[0].push_back(static_cast<float>(by_x));
     out[1].push_back(static_cast<float>(by_y));
     out[2].push_back(static_cast<float>(turn));
-    out[3].push_back(static_cast<float>(blurred[i] - margin[i]));
+    out[3].push_back(static_cast<float>(blur));
   }
   return out;
 }

@@ -38,8 +38,10 @@ double wrong_share(const MeasuredJob& job, const Model& model, const LayerChoice
 Model refit(const MeasuredJob& job, Model model, const std::vector<FreeNumber>& numbers,
             const LayerChoice& layers, int rounds);
 
-// How many points a fit looks at, and how far from the model's edge a measured one may be.
-constexpr int kFitPoints = 40000;
+// How many points a choice and a fit look at, and how far from the model's edge a measured one may
+// be.
+constexpr int kChoicePoints = 36000;
+constexpr int kFitPoints = 15000;
 constexpr double kPairReachMm = 0.45;
 
 }  // namespace binderjet

@@ -23,7 +23,7 @@ struct Drawn {
 
 std::vector<Drawn> drawn_points(const MeasuredJob& job, const std::vector<EffectSpec>& model) {
   const LayerChoice all(job.masks.size(), true);
-  const auto points = surface_points(job, model, all, kFitPoints, kPairReachMm);
+  const auto points = surface_points(job, model, all, kChoicePoints, kPairReachMm);
   constexpr double kDensityRadiusMm = 2;
   const int reach = pixels_for(kDensityRadiusMm, job.grid.pitch_mm[2]);
   std::unique_ptr<DensityField> density;
