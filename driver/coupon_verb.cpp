@@ -16,7 +16,7 @@ void add_coupon_verb(CLI::App& program) {
   CLI::App* verb = program.add_subcommand("coupon", "make a test part that shows what is lost");
   auto kind = std::make_shared<std::string>("slots");
   auto out = std::make_shared<std::string>();
-  verb->add_option("--kind", *kind, "slots, walls or golfball")
+  verb->add_option("--kind", *kind, "slots, walls, full or golfball")
       ->check(CLI::IsMember(coupon_kinds()))
       ->capture_default_str();
   verb->add_option("-o,--output", *out, "the STL file to write")->required();

@@ -163,7 +163,7 @@ void run(const ExportOptions& options, const Console& console) {
   } else if (options.what == "target") {
     export_target(job, options, console);
   } else {
-    write_printed(job, PrinterModel(job.header->profile.effects, job.header->grid),
+    write_printed(job, PrinterModel(job.header->profile.effects, job.header->grid, job.place()),
                   job.header->grid, options.out, console);
   }
   const std::string& out = options.out.empty() ? options.cuberille : options.out;

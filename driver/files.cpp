@@ -7,10 +7,12 @@
 #include <cerrno>
 #include <cstdio>
 #include <cstring>
+#include <filesystem>
 #include <memory>
 #include <vector>
 
 #include "slicer/error.h"
+#include "slicer/stack/png.h"
 
 namespace binderjet {
 namespace {
@@ -37,6 +39,14 @@ std::string read_text(const std::string& path) {
   std::string text;
   for_each_piece(path, [&](const char* bytes, std::size_t size) { text.append(bytes, size); });
   return text;
+}
+
+void write_text(const std::string& path, const std::string& text) {
+  const std::string part = path + ".part";
+  write_file(part, std::as_bytes(std::span(text)));
+  std::error_code error;
+  std::filesystem::rename(part, path, error);
+  if (error) throw Error(ErrorKind::kBadInput, path, "cannot rename: " + error.message());
 }
 
 std::string file_hash(const std::string& path) {

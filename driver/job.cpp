@@ -90,7 +90,8 @@ std::unique_ptr<Stream<MaskLayer>> mask_stream(const JobHeader& header,
                                                LayerRange layers) {
   if (header.enhance == "none")
     return plain_masks(std::move(mesh), header.grid, header.box, layers);
-  auto model = std::make_shared<const PrinterModel>(header.profile.effects, header.grid);
+  auto model = std::make_shared<const PrinterModel>(header.profile.effects, header.grid,
+                                                    place_of(header.box, header.grid));
   return paper_masks(std::move(mesh), header.grid, header.box, layers, std::move(model),
                      header.passes);
 }

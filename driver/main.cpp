@@ -20,6 +20,7 @@ int main(int argc, char** argv) {
   add_simulate_verb(program);
   add_score_verb(program);
   add_coupon_verb(program);
+  add_calibrate_verb(program);
   add_join_verb(program);
   add_print_verb(program);
   add_profile_verb(program);

@@ -67,6 +67,15 @@ std::unique_ptr<Stream<RunLayer>> MaskSource::stream() const {
   return std::make_unique<SourceStream>(*this);
 }
 
+JobPlace MaskSource::place() const {
+  JobPlace place;
+  for (std::size_t axis = 0; axis < 2; ++axis) {
+    place.origin_mm[axis] = origin_mm[axis];
+    place.size_mm[axis] = size_px[axis] * pitch_mm[axis];
+  }
+  return place;
+}
+
 StackInfo MaskSource::stack_info(StackKind kind) const {
   StackInfo info;
   info.kind = kind;

@@ -28,6 +28,7 @@ struct MaskSource {
   // Likewise its color bitmap, 24-bit rows; empty function if the job has no color.
   std::function<std::vector<std::byte>(int index)> color;
 
+  JobPlace place() const;
   LayerRange layers() const { return {first, first + size_px[2]}; }
   RunLayer read(int index) const { return unpack(packed(index), size_px[0], size_px[1]); }
   // The source must outlive the stream.

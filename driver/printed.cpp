@@ -11,7 +11,7 @@ std::unique_ptr<Stream<RunLayer>> printed_stream(const MaskSource& masks,
   const LayerRange layers = masks.layers();
   return std::make_unique<Print>(
       masks.stream(), layers, model.window_reach(), layers,
-      [&model](int, Print::Window window) { return model.print(window); });
+      [&model](int layer, Print::Window window) { return model.print(window, layer); });
 }
 
 void write_printed(const MaskSource& masks, const PrinterModel& model, const Grid& grid,

@@ -6,6 +6,7 @@
 #include <nlohmann/json.hpp>
 #include <tuple>
 
+#include "driver/print_colors.h"
 #include "slicer/rows.h"
 #include "slicer/stack/indexed_png.h"
 
@@ -16,8 +17,8 @@ using Json = nlohmann::ordered_json;
 
 // In the order in which they paint over each other.
 enum Color : std::uint8_t { kPowder, kCorrect, kMissing, kExtra, kLost, kFused };
-constexpr std::array<Rgb, 6> kPalette{
-    {{255, 255, 255}, {190, 190, 190}, {255, 120, 110}, {120, 160, 255}, {170, 0, 0}, {0, 0, 150}}};
+constexpr std::array<Rgb, 6> kPalette{kPowderColor, kCorrectColor, kMissingColor,
+                                      kExtraColor,  {170, 0, 0},   {0, 0, 150}};
 
 constexpr std::size_t kMostListed = 10000;
 

@@ -65,7 +65,7 @@ void score(const ScoreOptions& options, const Console& console) {
   const MaskSource job = open_job(options.job, console);
   const JobHeader& header = *job.header;
   const Profile profile = options.profile.empty() ? header.profile : load_profile(options.profile);
-  const PrinterModel model(profile.effects, header.grid);
+  const PrinterModel model(profile.effects, header.grid, job.place());
   const auto layers =
       score_layers(voxelize(load_target(options, header), header.grid, header.box, job.layers()),
                    printed_stream(job, model), header.grid, job.layers());

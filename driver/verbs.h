@@ -17,5 +17,6 @@ void add_profile_verb(CLI::App& program);
 void add_simulate_verb(CLI::App& program);
 void add_score_verb(CLI::App& program);
 void add_coupon_verb(CLI::App& program);
+void add_calibrate_verb(CLI::App& program);
 
 }  // namespace binderjet

@@ -14,6 +14,7 @@
 #include <numbers>
 #include <utility>
 
+#include "slicer/coupon_shapes.h"
 #include "slicer/error.h"
 #include "slicer/stack/png.h"
 
@@ -25,33 +26,11 @@ Point scaled(const Point& a, double s) { return {a[0] * s, a[1] * s, a[2] * s}; 
 double dot(const Point& a, const Point& b) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }
 Point unit(const Point& a) { return scaled(a, 1 / std::sqrt(dot(a, a))); }
 
-// Boxes may touch or overlap: the winding number unites them.
-void add_box(Mesh& mesh, const Point& low, const Point& high) {
-  const int base = static_cast<int>(mesh.points.size());
-  for (int corner = 0; corner < 8; ++corner) {
-    mesh.points.push_back({(corner & 1) != 0 ? high[0] : low[0], (corner & 2) != 0 ? high[1] : low[1],
-                           (corner & 4) != 0 ? high[2] : low[2]});
-  }
-  constexpr std::array<Triangle, 12> kFaces = {{{0, 2, 1}, {1, 2, 3}, {4, 5, 6}, {5, 7, 6},
-                                                {0, 1, 4}, {1, 5, 4}, {2, 6, 3}, {3, 6, 7},
-                                                {0, 4, 2}, {2, 4, 6}, {1, 3, 5}, {3, 7, 5}}};
-  for (const Triangle& t : kFaces) mesh.triangles.push_back({t[0] + base, t[1] + base, t[2] + base});
-}
-
-// A box between two corners, with x and y exchanged where `along_y`.
-void add_turned(Mesh& mesh, Point low, Point high, bool along_y) {
-  if (along_y) {
-    std::swap(low[0], low[1]);
-    std::swap(high[0], high[1]);
-  }
-  add_box(mesh, low, high);
-}
-
 Mesh slots() {
-  constexpr double kBar = 2;      // solid between two slots
-  constexpr double kDepth = 6;    // length of a slot
+  constexpr double kBar = 2;    // solid between two slots
+  constexpr double kDepth = 6;  // length of a slot
   constexpr double kHeight = 4;
-  constexpr double kBottom = 1;   // solid below the slots, so that the block stays one piece
+  constexpr double kBottom = 1;  // solid below the slots, so that the block stays one piece
   constexpr double kGap = 2;
   Mesh mesh;
   for (const bool along_y : {false, true}) {
@@ -153,9 +132,9 @@ Mesh golf_ball() {
   Mesh mesh = unit_ball(kRounds);
   for (Point& point : mesh.points) {
     // The centres are sorted by z, falling; only those within a dimple's height matter.
-    const auto first = std::lower_bound(
-        centers.begin(), centers.end(), point[2] + kDimpleAngle,
-        [](const Point& center, double z) { return center[2] > z; });
+    const auto first =
+        std::lower_bound(centers.begin(), centers.end(), point[2] + kDimpleAngle,
+                         [](const Point& center, double z) { return center[2] > z; });
     double nearest = 0;
     for (auto c = first; c != centers.end() && (*c)[2] >= point[2] - kDimpleAngle; ++c) {
       nearest = std::max(nearest, dot(*c, point));
@@ -176,13 +155,14 @@ void put(std::vector<std::byte>& out, Value value) {
 }  // namespace
 
 const std::vector<std::string>& coupon_kinds() {
-  static const std::vector<std::string> kinds = {"slots", "walls", "golfball"};
+  static const std::vector<std::string> kinds = {"slots", "walls", "full", "golfball"};
   return kinds;
 }
 
 Mesh coupon(const std::string& kind) {
   if (kind == "slots") return slots();
   if (kind == "walls") return walls();
+  if (kind == "full") return full_coupon();
   if (kind == "golfball") return golf_ball();
   throw Error(ErrorKind::kUsage, "--kind",
               fmt::format("\"{}\" is not one of {}", kind, fmt::join(coupon_kinds(), ", ")));

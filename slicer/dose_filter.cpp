@@ -4,7 +4,10 @@
 #include <algorithm>
 #include <cassert>
 #include <cmath>
+#include <optional>
 #include <tuple>
+
+#include "slicer/density.h"
 
 namespace binderjet {
 namespace {
@@ -51,11 +54,106 @@ void add_ramps(const RunLayer& mask, int y, std::array<int, 2> repeat, const Ker
   }
 }
 
+// Places of shifted flips and rows are whole numbers of 1 / kFine voxels, and a ramp between two
+// voxels is shared by them: the dose is interpolated, and its sums stay integers.
+constexpr int kFine = 16;
+
+int fine(double vx) { return static_cast<int>(std::lround(vx * kFine)); }
+int floor_div(int a, int b) { return a / b - (a % b < 0 ? 1 : 0); }
+
+// The same as add_ramps() for a mask that is shifted; every weight is kFine * kFine times as large.
+class ShiftedRamps {
+ public:
+  ShiftedRamps(const Grid& grid, const JobPlace& place, const PlacedDose& placed)
+      : grid_(grid), place_(place), placed_(placed) {}
+
+  void add(const RunLayer& mask, int y, int layer, const Kernel& along_y, std::int64_t scale,
+           std::size_t kernel, std::vector<Ramp>& ramps) const {
+    const int ry = grid_.detail_vx[1];
+    const int most = static_cast<int>(std::ceil(most_mm() / grid_.voxel_mm(1))) + 1;
+    const int first = std::max(0, floor_div(y - along_y.last() - most, ry));
+    const int last = std::min(mask.height() - 1, (y - along_y.first + most) / ry);
+    for (int row = first; row <= last; ++row) {
+      const std::span<const int> flips = mask.row(row);
+      if (flips.empty()) continue;
+      const double middle = (row + 0.5) * ry - 0.5;
+      const Spot spot =
+          spot_at(grid_, place_, grid_.detail_vx[0] * mask.width() / 2.0, middle, layer);
+      const int shift = fine(placed_.shift_at(spot)[1] / grid_.voxel_mm(1));
+      std::int64_t weight = 0;
+      for (int voxel_row = row * ry; voxel_row < (row + 1) * ry; ++voxel_row) {
+        const int offset = (y - voxel_row) * kFine - shift;
+        const int whole = floor_div(offset, kFine);
+        const int part = offset - whole * kFine;
+        weight += (kFine - part) * along_y.at(whole) + part * along_y.at(whole + 1);
+      }
+      if (weight != 0) add_row(flips, spot, weight * scale, kernel, ramps);
+    }
+  }
+
+ private:
+  double most_mm() const {
+    double sum = 0;
+    for (const MaskShift& shift : placed_.shifts) sum += shift.most_mm;
+    return sum;
+  }
+  void add_row(std::span<const int> flips, Spot spot, std::int64_t weight, std::size_t kernel,
+               std::vector<Ramp>& ramps) const {
+    const double voxel_mm = grid_.voxel_mm(0);
+    for (const int flip : flips) {
+      spot.x_mm = place_.origin_mm[0] + flip * grid_.pitch_mm[0];
+      const int at = fine(flip * grid_.detail_vx[0] + placed_.shift_at(spot)[0] / voxel_mm);
+      const int whole = floor_div(at, kFine);
+      const int part = at - whole * kFine;
+      ramps.push_back({whole, kernel, weight * (kFine - part)});
+      if (part != 0) ramps.push_back({whole + 1, kernel, weight * part});
+      weight = -weight;
+    }
+  }
+
+  const Grid& grid_;
+  const JobPlace& place_;
+  const PlacedDose& placed_;
+};
+
+// By what the dose of a row's voxels is multiplied.
+class RowGain {
+ public:
+  RowGain(const Grid& grid, const JobPlace& place, const PlacedDose& placed, int layer,
+          const DensityField* density)
+      : grid_(grid), place_(place), placed_(placed), layer_(layer), density_(density) {
+    for (const DoseGain& gain : placed.gains) {
+      most_ *= 1 + gain.most;
+      least_ *= std::max(0.0, 1 - gain.most);
+    }
+  }
+  void at_row(int y) { y_ = y; }
+  double operator()(int x) const {
+    Spot spot = spot_at(grid_, place_, x, y_, layer_);
+    if (density_ != nullptr) spot.density = density_->at(x, y_);
+    return placed_.gain_at(spot);
+  }
+  bool none() const { return placed_.gains.empty(); }
+  double most() const { return most_; }
+  double least() const { return least_; }
+
+ private:
+  const Grid& grid_;
+  const JobPlace& place_;
+  const PlacedDose& placed_;
+  int layer_;
+  const DensityField* density_;
+  int y_ = 0;
+  double most_ = 1;
+  double least_ = 1;
+};
+
 // Writes one row of the result while the dose is followed from left to right.
 class RowBuilder {
  public:
-  RowBuilder(RunLayer& out, const std::vector<Kernel>& kernels, std::int64_t least)
-      : out_(out), kernels_(kernels), least_(least) {
+  RowBuilder(RunLayer& out, const std::vector<Kernel>& kernels, std::int64_t least,
+             const RowGain& gain)
+      : out_(out), kernels_(kernels), least_(least), gain_(gain) {
     for (const Kernel& kernel : kernels) {
       first_ = std::min(first_, kernel.first);
       last_ = std::max(last_, kernel.last());
@@ -65,14 +163,17 @@ class RowBuilder {
   void build(std::span<const Ramp> ramps) {
     dose_ = 0;
     solid_ = false;
+    done_ = 0;
     while (!ramps.empty()) {
       std::size_t near = 1;
       while (near < ramps.size() && ramps[near].at + first_ <= ramps[near - 1].at + last_ + 1) {
         ++near;
       }
+      if (!gain_.none()) follow_gain(ramps.front().at + first_);
       walk(ramps.first(near));
       ramps = ramps.subspan(near);
     }
+    if (!gain_.none()) follow_gain(out_.width());
     if (solid_) out_.flip(out_.width());
     out_.end_row();
   }
@@ -90,16 +191,38 @@ class RowBuilder {
     }
     for (int x = begin; x < end; ++x) {
       dose_ += steps_[static_cast<std::size_t>(x - begin)];
-      if ((dose_ >= least_) != solid_) {
-        solid_ = !solid_;
-        out_.flip(std::clamp(x, 0, out_.width()));
-      }
+      set(x, gain_.none() ? dose_ >= least_ : binds(x));
     }
+    done_ = end;
+  }
+
+  // Where the dose is constant it may still pass the level with the gain.
+  void follow_gain(int end) {
+    const double dose = static_cast<double>(dose_);
+    const auto least = static_cast<double>(least_);
+    if (dose * gain_.most() < least) {
+      if (end > done_) set(done_, false);
+    } else if (dose * gain_.least() >= least) {
+      if (end > done_) set(done_, true);
+    } else {
+      for (int x = std::max(0, done_); x < std::min(end, out_.width()); ++x) set(x, binds(x));
+    }
+    done_ = std::max(done_, end);
+  }
+  bool binds(int x) const {
+    return static_cast<double>(dose_) * gain_(x) >= static_cast<double>(least_);
+  }
+  void set(int x, bool solid) {
+    if (solid == solid_) return;
+    solid_ = solid;
+    out_.flip(std::clamp(x, 0, out_.width()));
   }
 
   RunLayer& out_;
   const std::vector<Kernel>& kernels_;
   std::int64_t least_;
+  const RowGain& gain_;
+  int done_ = 0;  // the row is followed up to here
   int first_ = 0;
   int last_ = 0;
   std::int64_t dose_ = 0;
@@ -109,8 +232,9 @@ class RowBuilder {
 
 }  // namespace
 
-DoseFilter::DoseFilter(std::span<const DoseTerm> terms, double level, std::array<int, 2> repeat)
-    : repeat_(repeat) {
+DoseFilter::DoseFilter(std::span<const DoseTerm> terms, double level, const Grid& grid,
+                       const PlacedDose& placed, const JobPlace& place)
+    : grid_(grid), placed_(placed), place_(place), repeat_{grid.detail_vx[0], grid.detail_vx[1]} {
   const auto total = [](const DoseTerm& term) {
     return static_cast<double>(term.x.total()) * static_cast<double>(term.y.total());
   };
@@ -119,8 +243,8 @@ DoseFilter::DoseFilter(std::span<const DoseTerm> terms, double level, std::array
   double most = 0;
   for (const DoseTerm& term : terms) most += std::abs(term.gain);
   double unit = total(terms.front());
-  constexpr double kRoom = 4e18;
-  for (int bit = 0; bit < 20 && unit * most * 2 < kRoom; ++bit) unit *= 2;
+  const double room = placed.shifts.empty() ? 4e18 : 4e18 / (kFine * kFine);
+  for (int bit = 0; bit < 20 && unit * most * 2 < room; ++bit) unit *= 2;
 
   for (const DoseTerm& term : terms) {
     const auto known = std::find(x_.begin(), x_.end(), term.x);
@@ -130,25 +254,41 @@ DoseFilter::DoseFilter(std::span<const DoseTerm> terms, double level, std::array
   }
   // A product that is whole but for rounding is that number: an exact tie counts as bound.
   constexpr double kRounding = 1e-12;
+  if (!placed.shifts.empty()) level *= kFine * kFine;
   least_ = std::max<std::int64_t>(1, std::llround(std::ceil(level * unit * (1 - kRounding))));
 }
 
-RunLayer DoseFilter::operator()(std::span<const RunLayer* const> window) const {
+RunLayer DoseFilter::operator()(std::span<const RunLayer* const> window, int layer) const {
   const int middle = static_cast<int>(window.size()) / 2;
   const RunLayer& mask = *window[static_cast<std::size_t>(middle)];
   const int height = mask.height() * repeat_[1];
   RunLayer out(mask.width() * repeat_[0]);
   out.reserve(height, mask.flip_count() * static_cast<std::size_t>(repeat_[1]));
-  RowBuilder builder(out, x_, least_);
+  std::optional<DensityField> density;
+  if (placed_.density_radius_mm) {
+    const int reach = placed_.density_layers(grid_);
+    density.emplace(window.subspan(static_cast<std::size_t>(middle - reach),
+                                   2 * static_cast<std::size_t>(reach) + 1),
+                    grid_, *placed_.density_radius_mm);
+  }
+  RowGain gain(grid_, place_, placed_, layer, density ? &*density : nullptr);
+  RowBuilder builder(out, x_, least_, gain);
+  const ShiftedRamps shifted(grid_, place_, placed_);
   std::vector<Ramp> ramps;
   for (int y = 0; y < height; ++y) {
     ramps.clear();
     for (const Term& term : terms_) {
       assert(std::abs(term.layer) <= middle);
       const RunLayer* from = window[static_cast<std::size_t>(middle + term.layer)];
-      if (from != nullptr) add_ramps(*from, y, repeat_, term.y, term.scale, term.kernel, ramps);
+      if (from == nullptr) continue;
+      if (placed_.shifts.empty()) {
+        add_ramps(*from, y, repeat_, term.y, term.scale, term.kernel, ramps);
+      } else {
+        shifted.add(*from, y, layer + term.layer, term.y, term.scale, term.kernel, ramps);
+      }
     }
     sort_and_merge(ramps);
+    gain.at_row(y);
     builder.build(ramps);
   }
   return out;

@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "slicer/kernel.h"
+#include "slicer/placed_dose.h"
 #include "slicer/run_layer.h"
 
 namespace binderjet {
@@ -30,11 +31,12 @@ class DoseFilter {
   // A voxel is 1 iff its dose, the sum of the terms (at least one), is at least `level` (> 0).
   // The first term is exact; gains of the others relative to it are rounded to 2^-20 or, where the
   // sums need the room, a little coarser. Every mask pixel is repeat[0] x repeat[1] voxels.
-  DoseFilter(std::span<const DoseTerm> terms, double level, std::array<int, 2> repeat);
+  DoseFilter(std::span<const DoseTerm> terms, double level, const Grid& grid,
+             const PlacedDose& placed = {}, const JobPlace& place = {});
 
   // window[i] is the mask of layer k - (window.size() - 1) / 2 + i, at least as far as the terms
-  // reach; null is powder. The middle one must be there.
-  RunLayer operator()(std::span<const RunLayer* const> window) const;
+  // reach; null is powder. The middle one must be there. Shifted flips are placed to 1/16 voxel.
+  RunLayer operator()(std::span<const RunLayer* const> window, int layer = 0) const;
 
  private:
   // A term as integers; `kernel` is its place in x_.
@@ -45,6 +47,9 @@ class DoseFilter {
     std::int64_t scale;
   };
 
+  Grid grid_;
+  PlacedDose placed_;
+  JobPlace place_;
   std::array<int, 2> repeat_;
   std::vector<Kernel> x_;  // the different kernels along x
   std::vector<Term> terms_;

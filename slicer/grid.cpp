@@ -26,4 +26,13 @@ JobBox job_box(const Box& part, const Grid& grid, std::array<int, 2> corner_px,
   return box;
 }
 
+JobPlace place_of(const JobBox& box, const Grid& grid) {
+  JobPlace place;
+  for (std::size_t axis = 0; axis < 2; ++axis) {
+    place.origin_mm[axis] = box.bed_px[axis] * grid.pitch_mm[axis];
+    place.size_mm[axis] = box.size_px[axis] * grid.pitch_mm[axis];
+  }
+  return place;
+}
+
 }  // namespace binderjet

@@ -29,6 +29,15 @@ struct JobBox {
   int height_vx(const Grid& grid) const { return size_px[1] * grid.detail_vx[1]; }
 };
 
+// Where a job's masks are on the bed: effects may depend on it.
+struct JobPlace {
+  std::array<double, 2> origin_mm{};  // the lower corner of the masks
+  std::array<double, 2> size_mm{};    // of the masks
+
+  double center_mm(std::size_t axis) const { return origin_mm[axis] + size_mm[axis] / 2; }
+};
+JobPlace place_of(const JobBox& box, const Grid& grid);
+
 // Pixels or layers needed for a length from 0; a length within rounding of a whole number is that
 // number, so that 10.2 mm are 100 layers of 0.102 mm.
 int pixels_for(double length_mm, double pitch_mm);

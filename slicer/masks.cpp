@@ -24,13 +24,13 @@ std::unique_ptr<Stream<PassLayer>> with_print(std::unique_ptr<Stream<SlicedLayer
                                               std::shared_ptr<const PrinterModel> model) {
   using Print = Step<SlicedLayer, PassLayer>;
   return std::make_unique<Print>(std::move(sliced), layers, model->window_reach(), job_layers,
-                                 [model](int, Print::Window window) {
+                                 [model](int layer, Print::Window window) {
                                    std::vector<const RunLayer*> masks;
-                                   for (const Shared<SlicedLayer>& layer : window) {
-                                     masks.push_back(layer == nullptr ? nullptr : &layer->mask);
+                                   for (const Shared<SlicedLayer>& near : window) {
+                                     masks.push_back(near == nullptr ? nullptr : &near->mask);
                                    }
                                    const SlicedLayer& here = *window[window.size() / 2];
-                                   return PassLayer{here.target, here.volume, model->print(masks)};
+                                   return PassLayer{here.target, here.volume, model->print(masks, layer)};
                                  });
 }
 

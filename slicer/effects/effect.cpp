@@ -5,10 +5,27 @@
 
 #include <algorithm>
 
+#include "slicer/effects/band_swath.h"
+#include "slicer/effects/density.h"
+#include "slicer/effects/empirical.h"
 #include "slicer/effects/fill.h"
+#include "slicer/effects/first_layers.h"
+#include "slicer/effects/grad_bed.h"
+#include "slicer/effects/grad_z.h"
+#include "slicer/effects/jet_out.h"
+#include "slicer/effects/layer_shift_low.h"
+#include "slicer/effects/parity.h"
+#include "slicer/effects/pause.h"
+#include "slicer/effects/registration_drift.h"
+#include "slicer/effects/rounding.h"
+#include "slicer/effects/scale_xyz.h"
+#include "slicer/effects/shift.h"
 #include "slicer/effects/spread.h"
 #include "slicer/effects/survive.h"
+#include "slicer/effects/tail.h"
 #include "slicer/effects/threshold.h"
+#include "slicer/effects/z_bleed_down.h"
+#include "slicer/effects/z_wick_up.h"
 
 namespace binderjet {
 namespace {
@@ -38,7 +55,9 @@ SpecFault check_word(const WordRule& rule, const EffectSpec& spec) {
 
 SpecFault check_numbers(const NumberRule& rule, const EffectSpec& spec) {
   const auto found = spec.numbers.find(rule.name);
-  if (found == spec.numbers.end()) return {"", fmt::format("needs the key {}", rule.name)};
+  if (found == spec.numbers.end()) {
+    return {"", rule.optional ? "" : fmt::format("needs the key {}", rule.name)};
+  }
   if (found->second.size() != rule.count) {
     return {rule.name, fmt::format("needs {} number{}", rule.count, rule.count == 1 ? "" : "s")};
   }
@@ -54,8 +73,29 @@ SpecFault check_numbers(const NumberRule& rule, const EffectSpec& spec) {
 }  // namespace
 
 const std::vector<EffectKind>& effect_kinds() {
-  static const std::vector<EffectKind> kinds = {spread_kind(), threshold_kind(), fill_kind(),
-                                                survive_kind()};
+  static const std::vector<EffectKind> kinds = {
+      spread_kind(),
+      threshold_kind(),
+      fill_kind(),
+      survive_kind(),
+      tail_kind(),
+      rounding_kind(),
+      z_bleed_down_kind(),
+      z_wick_up_kind(),
+      density_kind(),
+      shift_kind(),
+      registration_drift_kind(),
+      layer_shift_low_kind(),
+      parity_kind(),
+      scale_xyz_kind(),
+      grad_bed_kind(),
+      grad_z_kind(),
+      pause_kind(),
+      first_layers_kind(),
+      band_swath_kind(),
+      jet_out_kind(),
+      empirical_kind(),
+  };
   return kinds;
 }
 

@@ -23,6 +23,11 @@ struct EffectSpec {
   double number(const std::string& name, std::size_t index = 0) const {
     return numbers.at(name).at(index);
   }
+  // For an optional parameter.
+  double number_or(const std::string& name, double otherwise) const {
+    const auto found = numbers.find(name);
+    return found == numbers.end() ? otherwise : found->second.front();
+  }
 };
 
 // How far from a voxel masks still matter for it: voxels in x and y, layers in z.
@@ -37,6 +42,7 @@ struct NumberRule {
   std::size_t count;  // how many numbers the parameter has
   double min;         // allowed: min < value <= max
   double max;
+  bool optional = false;
 };
 struct WordRule {
   std::string name;

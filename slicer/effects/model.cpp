@@ -2,6 +2,7 @@
 #include "slicer/effects/model.h"
 
 #include <algorithm>
+#include <cmath>
 #include <utility>
 
 #include "slicer/error.h"
@@ -10,8 +11,9 @@
 namespace binderjet {
 namespace {
 
-ModelForm form_of(const std::vector<EffectSpec>& effects, const Grid& grid) {
+ModelForm form_of(const std::vector<EffectSpec>& effects, const Grid& grid, const JobPlace& place) {
   ModelForm form;
+  form.place = place;
   for (const EffectSpec& effect : effects) find_effect_kind(effect.kind)->add(effect, grid, form);
   return form;
 }
@@ -26,7 +28,19 @@ void ModelForm::bind_at(double new_level) {
   level = new_level;
 }
 
-Reach ModelForm::reach() const {
+void ModelForm::shift(std::function<std::array<double, 2>(const Spot&)> by_mm,
+                      const std::array<double, 2>& most_mm) {
+  placed.shifts.push_back({std::move(by_mm), std::max(std::abs(most_mm[0]), std::abs(most_mm[1]))});
+}
+
+void ModelForm::ask_density(double radius_mm) {
+  if (placed.density_radius_mm && *placed.density_radius_mm != radius_mm) {
+    throw Error(ErrorKind::kBadInput, "effects", "density is asked for with two radii; keep one");
+  }
+  placed.density_radius_mm = radius_mm;
+}
+
+Reach ModelForm::reach(const Grid& grid) const {
   Reach reach;
   for (const DoseTerm& term : terms) {
     reach.xy_vx[0] = std::max({reach.xy_vx[0], -term.x.first, term.x.last()});
@@ -37,44 +51,55 @@ Reach ModelForm::reach() const {
   for (const std::array<int, 2>& box : survive_vx) {
     for (std::size_t axis = 0; axis < 2; ++axis) reach.xy_vx[axis] += box[axis] - 1;
   }
+  for (const MaskShift& shift : placed.shifts) {
+    for (int axis = 0; axis < 2; ++axis) {
+      reach.xy_vx[static_cast<std::size_t>(axis)] += pixels_for(shift.most_mm, grid.voxel_mm(axis));
+    }
+  }
+  reach.layers_below = std::max(reach.layers_below, placed.density_layers(grid));
+  reach.layers_above = std::max(reach.layers_above, placed.density_layers(grid));
   return reach;
 }
 
-PrinterModel::PrinterModel(const std::vector<EffectSpec>& effects, const Grid& grid)
-    : PrinterModel(form_of(effects, grid), grid) {}
+PrinterModel::PrinterModel(const std::vector<EffectSpec>& effects, const Grid& grid,
+                           const JobPlace& place)
+    : PrinterModel(form_of(effects, grid, place), grid, place) {}
 
-PrinterModel::PrinterModel(ModelForm form, const Grid& grid)
-    : repeat_{grid.detail_vx[0], grid.detail_vx[1]}, form_(std::move(form)), reach_(form_.reach()) {
+PrinterModel::PrinterModel(ModelForm form, const Grid& grid, const JobPlace& place)
+    : repeat_{grid.detail_vx[0], grid.detail_vx[1]},
+      form_(std::move(form)),
+      reach_(form_.reach(grid)) {
   if (form_.level <= 0) {
     throw Error(ErrorKind::kBadInput, "effects",
                 "nothing binds powder: the model needs a threshold or a fill");
   }
-  choose_filter();
+  choose_filter(grid, place);
 }
 
-void PrinterModel::choose_filter() {
+void PrinterModel::choose_filter(const Grid& grid, const JobPlace& place) {
   const DoseTerm& first = form_.terms.front();
   const auto x = as_box(first.x);
   const auto y = as_box(first.y);
-  if (form_.terms.size() == 1 && first.layer == 0 && first.gain == 1 && x && y) {
+  const bool anywhere = form_.placed.gains.empty() && form_.placed.shifts.empty();
+  if (form_.terms.size() == 1 && first.layer == 0 && first.gain == 1 && x && y && anywhere) {
     box_ = OneBox{*x, *y, least_sum(*x, *y, form_.level)};
   } else {
-    filter_.emplace(form_.terms, form_.level, repeat_);
+    filter_.emplace(form_.terms, form_.level, grid, form_.placed, place);
   }
 }
 
-RunLayer PrinterModel::print(std::span<const RunLayer* const> window) const {
+RunLayer PrinterModel::print(std::span<const RunLayer* const> window, int layer) const {
   RunLayer printed =
       box_ ? box_threshold(*window[window.size() / 2], repeat_, box_->x, box_->y, box_->least)
-           : (*filter_)(window);
+           : (*filter_)(window, layer);
   for (const std::array<int, 2>& box : form_.survive_vx) printed = opening(printed, box);
   return printed;
 }
 
-RunLayer PrinterModel::print(std::span<const Shared<RunLayer>> window) const {
+RunLayer PrinterModel::print(std::span<const Shared<RunLayer>> window, int layer) const {
   std::vector<const RunLayer*> masks;
   for (const Shared<RunLayer>& mask : window) masks.push_back(mask.get());
-  return print(masks);
+  return print(masks, layer);
 }
 
 RunLayer PrinterModel::print(const RunLayer& mask) const {

@@ -24,17 +24,27 @@ struct ModelForm {
   double level = 0;  // a voxel is bound iff its dose is at least this; 0: no effect has said so
   // Bound powder that holds no such box (voxels in x and y) is brushed off.
   std::vector<std::array<int, 2>> survive_vx;
+  // What depends on the place on the bed, in mm; `place` is where the job is on it.
+  PlacedDose placed;
+  JobPlace place;
 
+  // Shifts every mask by by_mm(spot); neither component is ever larger than that of `most_mm`.
+  void shift(std::function<std::array<double, 2>(const Spot&)> by_mm,
+             const std::array<double, 2>& most_mm);
+  // Asks for Spot::density; Error{kBadInput} if another effect asks for another radius.
+  void ask_density(double radius_mm);
   // Declares the level; Error{kBadInput} if another effect already has.
   void bind_at(double new_level);
-  Reach reach() const;
+  Reach reach(const Grid& grid) const;
 };
 
 class PrinterModel {
  public:
-  // Error{kBadInput} if the effects are no whole model (nothing binds, or binds twice).
-  PrinterModel(const std::vector<EffectSpec>& effects, const Grid& grid);
-  PrinterModel(ModelForm form, const Grid& grid);
+  // Error{kBadInput} if the effects are no whole model (nothing binds, or binds twice). `place` is
+  // where the job stands; a model that does not ask for it prints the same anywhere.
+  PrinterModel(const std::vector<EffectSpec>& effects, const Grid& grid,
+               const JobPlace& place = {});
+  PrinterModel(ModelForm form, const Grid& grid, const JobPlace& place = {});
 
   const ModelForm& form() const { return form_; }
   const Reach& reach() const { return reach_; }
@@ -43,9 +53,9 @@ class PrinterModel {
 
   // The printed voxels of a layer, at the voxel grid in x and y; all its rz slices are equal.
   // `window` holds the masks of window_reach() layers below it, its own, and as many above; null
-  // is powder.
-  RunLayer print(std::span<const RunLayer* const> window) const;
-  RunLayer print(std::span<const Shared<RunLayer>> window) const;
+  // is powder. `layer` is the layer's number in its job, from 0 on the bed.
+  RunLayer print(std::span<const RunLayer* const> window, int layer = 0) const;
+  RunLayer print(std::span<const Shared<RunLayer>> window, int layer = 0) const;
   // The same for a layer between layers of powder.
   RunLayer print(const RunLayer& mask) const;
 
@@ -56,7 +66,7 @@ class PrinterModel {
     BoxWeights y;
     std::int64_t least;
   };
-  void choose_filter();
+  void choose_filter(const Grid& grid, const JobPlace& place);
 
   std::array<int, 2> repeat_;
   ModelForm form_;

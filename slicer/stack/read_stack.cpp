@@ -47,7 +47,8 @@ StackInfo parse(const std::string& path) {
     json.at("origin_mm").get_to(info.origin_mm);
     json.at("files").get_to(info.files);
     json.at("first").get_to(info.first);
-    if (json.contains("threshold")) json.at("threshold").get_to(info.threshold);
+    info.threshold_stated = json.contains("threshold");
+    if (info.threshold_stated) json.at("threshold").get_to(info.threshold);
     for (std::size_t axis = 0; axis < 3; ++axis) {
       constexpr int kMost = 1 << 20;
       if (info.size[axis] < 1 || info.size[axis] > kMost) {

@@ -21,9 +21,10 @@ struct StackInfo {
   std::array<int, 3> size{};  // nx, ny, number of images
   std::array<double, 3> pitch_mm{};
   std::array<double, 3> origin_mm{};
-  std::string files;    // printf pattern with one %d, e.g. "mask_%06d.png"
-  int first = 0;        // the number of the first image
-  int threshold = 128;  // an 8-bit sample is solid from here on
+  std::string files;              // printf pattern with one %d, e.g. "mask_%06d.png"
+  int first = 0;                  // the number of the first image
+  int threshold = 128;            // an 8-bit sample is solid from here on
+  bool threshold_stated = false;  // in stack.json, rather than by default
 };
 
 // Writes a stack under a temporary name beside `folder`; finish() gives it its name. A stack that

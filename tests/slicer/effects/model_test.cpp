@@ -105,7 +105,7 @@ TEST(DoseFilter, AgreesWithTheBoxFilterOnABox) {
   for (int row = 0; row < 12; ++row) mask.append_row(std::vector<int>{row, 2 * row + 3});
   const RunLayer* const window[] = {&mask};
   for (const double at : {0.1, 0.25, 0.5, 0.9, 1.0}) {
-    EXPECT_EQ(DoseFilter({&term, 1}, at, {2, 3})(window),
+    EXPECT_EQ(DoseFilter({&term, 1}, at, {{0.2, 0.3, 0.1}, {2, 3, 1}})(window),
               box_threshold(mask, {2, 3}, x, y, least_sum(x, y, at)));
   }
 }

@@ -1,0 +1,26 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// What gauges say, as one HTML page and as calibration.json (DESIGN section 10).
+#pragma once
+
+#include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
+
+#include "slicer/calibrate/gauge_lengths.h"
+#include "slicer/calibrate/gauge_slots.h"
+#include "slicer/calibrate/gauge_table.h"
+
+namespace binderjet {
+
+// For calibration.json, for the terminal, and for report.html.
+struct GaugeSummary {
+  nlohmann::ordered_json json;
+  std::string text;
+  std::string page;
+};
+
+GaugeSummary summarize(const SlotFindings& found, const GaugeTable& table,
+                       const std::vector<EffectSpec>& declared);
+GaugeSummary summarize(const LengthFindings& found, const GaugeTable& table);
+
+}  // namespace binderjet

@@ -1,0 +1,22 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// What coupons are put together from. Shapes may touch or overlap: the winding number unites them.
+#pragma once
+
+#include <array>
+
+#include "slicer/mesh/mesh.h"
+
+namespace binderjet {
+
+// Millimetres; `low` is below `high` on every axis.
+void add_box(Mesh& mesh, const Point& low, const Point& high);
+
+// A box between two corners, with x and y exchanged where `along_y`.
+void add_turned(Mesh& mesh, Point low, Point high, bool along_y);
+
+// A triangle moved along `way`, which is not in its plane.
+void add_prism(Mesh& mesh, const std::array<Point, 3>& base, const Point& way);
+
+Mesh full_coupon();
+
+}  // namespace binderjet

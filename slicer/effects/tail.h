@@ -1,0 +1,13 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Tail: a share of the binder runs farther than the rest, over a wide gaussian within its layer.
+//
+//   share: of all binder, 0 to 0.9; width_mm = [x, y]: full width at half the gaussian's height
+#pragma once
+
+#include "slicer/effects/effect.h"
+
+namespace binderjet {
+
+EffectKind tail_kind();
+
+}  // namespace binderjet

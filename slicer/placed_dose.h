@@ -1,0 +1,76 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// What in a printer model depends on where on the bed a voxel is: gains of the dose, shifts of the
+// mask. A model without any of it prints the same anywhere.
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <functional>
+#include <optional>
+#include <vector>
+
+#include "slicer/grid.h"
+
+namespace binderjet {
+
+// A place on the bed, in the middle of a voxel or of a mask row.
+struct Spot {
+  double x_mm = 0;
+  double y_mm = 0;
+  double z_mm = 0;  // the middle of its layer
+  int layer = 0;
+  double density = 0;  // the share of solid masks around it, where PlacedDose asks for it
+};
+
+// The dose is multiplied by 1 + amount(spot), never by less than 0.
+struct DoseGain {
+  std::function<double(const Spot&)> amount;
+  double most;  // |amount| is nowhere larger
+};
+
+// Binder meant for a spot lands by_mm(spot) beside it. Along y the shift of a row is that of its
+// middle, so rows stay rows.
+struct MaskShift {
+  std::function<std::array<double, 2>(const Spot&)> by_mm;
+  double most_mm;  // neither component is larger within 1 m
+};
+
+struct PlacedDose {
+  std::vector<DoseGain> gains;
+  std::vector<MaskShift> shifts;
+  // Half the width of the box whose solid share is Spot::density; in z whole layers.
+  std::optional<double> density_radius_mm;
+
+  double gain_at(const Spot& spot) const {
+    double gain = 1;
+    for (const DoseGain& factor : gains) gain *= std::max(0.0, 1 + factor.amount(spot));
+    return gain;
+  }
+  std::array<double, 2> shift_at(const Spot& spot) const {
+    std::array<double, 2> sum{};
+    for (const MaskShift& shift : shifts) {
+      const std::array<double, 2> by = shift.by_mm(spot);
+      for (std::size_t axis = 0; axis < 2; ++axis) sum[axis] += by[axis];
+    }
+    return sum;
+  }
+  int density_layers(const Grid& grid) const {
+    return density_radius_mm ? pixels_for(*density_radius_mm, grid.pitch_mm[2]) : 0;
+  }
+};
+
+// How far a spot is from the side of the job's box; 0 outside.
+inline double edge_distance(const JobPlace& place, const Spot& spot) {
+  const double x = spot.x_mm - place.origin_mm[0];
+  const double y = spot.y_mm - place.origin_mm[1];
+  return std::max(0.0, std::min({x, place.size_mm[0] - x, y, place.size_mm[1] - y}));
+}
+
+// The middle of voxel (x, y) of a layer of a job that stands at `place`.
+inline Spot spot_at(const Grid& grid, const JobPlace& place, double x_vx, double y_vx, int layer) {
+  return {place.origin_mm[0] + (x_vx + 0.5) * grid.voxel_mm(0),
+          place.origin_mm[1] + (y_vx + 0.5) * grid.voxel_mm(1), (layer + 0.5) * grid.pitch_mm[2],
+          layer, 0};
+}
+
+}  // namespace binderjet
