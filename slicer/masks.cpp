@@ -84,6 +84,38 @@ std::unique_ptr<Stream<MaskLayer>> paper_masks(TargetFrom target_from, const Gri
       });
 }
 
+std::unique_ptr<Stream<MaskLayer>> inverse_masks(TargetFrom target_from, LayerRange layers,
+                                                 int job_layers,
+                                                 std::shared_ptr<const InverseSolver> solver) {
+  const int turns = solver->stride();
+  const int sweeps = turns == 1 ? 1 : 2;
+  const auto range_before = [&](int steps) {
+    return grown(layers, steps * solver->reach(), job_layers);
+  };
+  LayerRange range = range_before(sweeps * turns);
+  using First = Step<VoxelLayer, InverseLayer>;
+  std::unique_ptr<Stream<InverseLayer>> improved = std::make_unique<First>(
+      target_from(range), range, 0, job_layers,
+      [solver](int, First::Window window) { return solver->plain(window[0]); });
+
+  using Improve = Step<InverseLayer, InverseLayer>;
+  for (int step = 0; step < sweeps * turns; ++step) {
+    range = range_before(sweeps * turns - step - 1);
+    improved = std::make_unique<Improve>(std::move(improved), range, solver->reach(), job_layers,
+                                         [solver, step, turns](int layer, Improve::Window window) {
+                                           return layer % turns == step % turns
+                                                      ? solver->improve(window, step < turns)
+                                                      : *window[window.size() / 2];
+                                         });
+  }
+
+  using Last = Step<InverseLayer, MaskLayer>;
+  return std::make_unique<Last>(std::move(improved), layers, 0, job_layers,
+                                [](int, Last::Window window) {
+                                  return MaskLayer{*window[0]->mask, window[0]->target};
+                                });
+}
+
 std::unique_ptr<Stream<MaskLayer>> plain_masks(std::shared_ptr<const Mesh> mesh, const Grid& grid,
                                                const JobBox& box, LayerRange layers) {
   return plain_masks(voxelize(std::move(mesh), grid, box, layers), grid, layers, box.size_px[2]);
@@ -95,6 +127,14 @@ std::unique_ptr<Stream<MaskLayer>> paper_masks(std::shared_ptr<const Mesh> mesh,
                                                int passes) {
   return paper_masks([&](LayerRange range) { return voxelize(std::move(mesh), grid, box, range); },
                      grid, layers, box.size_px[2], std::move(model), passes);
+}
+
+std::unique_ptr<Stream<MaskLayer>> inverse_masks(std::shared_ptr<const Mesh> mesh, const Grid& grid,
+                                                 const JobBox& box, LayerRange layers,
+                                                 std::shared_ptr<const InverseSolver> solver) {
+  return inverse_masks(
+      [&](LayerRange range) { return voxelize(std::move(mesh), grid, box, range); }, layers,
+      box.size_px[2], std::move(solver));
 }
 
 }  // namespace binderjet
