@@ -10,6 +10,7 @@
 
 #include "driver/files.h"
 #include "slicer/effects/process_window.h"
+#include "slicer/enhance/inverse.h"
 #include "slicer/error.h"
 #include "slicer/mesh/read_mesh.h"
 #include "slicer/mesh/repair.h"

@@ -3,6 +3,7 @@
 
 #include <utility>
 
+#include "slicer/enhance/inverse.h"
 #include "slicer/enhance/paper_rule.h"
 #include "slicer/slicing_operator.h"
 
@@ -88,25 +89,24 @@ std::unique_ptr<Stream<MaskLayer>> inverse_masks(TargetFrom target_from, LayerRa
                                                  int job_layers,
                                                  std::shared_ptr<const InverseSolver> solver) {
   const int turns = solver->stride();
-  const int sweeps = turns == 1 ? 1 : 2;
-  const auto range_before = [&](int steps) {
-    return grown(layers, steps * solver->reach(), job_layers);
+  const int improving = turns * (turns == 1 ? 1 : 2);
+  const int steps = improving + 2 * turns;
+  const auto range_with = [&](int steps_left) {
+    return grown(layers, steps_left * solver->reach(), job_layers);
   };
-  LayerRange range = range_before(sweeps * turns);
   using First = Step<VoxelLayer, InverseLayer>;
   std::unique_ptr<Stream<InverseLayer>> improved = std::make_unique<First>(
-      target_from(range), range, 0, job_layers,
+      target_from(range_with(steps)), range_with(steps), 0, job_layers,
       [solver](int, First::Window window) { return solver->plain(window[0]); });
 
   using Improve = Step<InverseLayer, InverseLayer>;
-  for (int step = 0; step < sweeps * turns; ++step) {
-    range = range_before(sweeps * turns - step - 1);
-    improved = std::make_unique<Improve>(std::move(improved), range, solver->reach(), job_layers,
-                                         [solver, step, turns](int layer, Improve::Window window) {
-                                           return layer % turns == step % turns
-                                                      ? solver->improve(window, step < turns)
-                                                      : *window[window.size() / 2];
-                                         });
+  for (int step = 0; step < steps; ++step) {
+    improved = std::make_unique<Improve>(
+        std::move(improved), range_with(steps - step - 1), solver->reach(), job_layers,
+        [solver, step, turns, improving](int layer, Improve::Window window) {
+          if (layer % turns != step % turns) return *window[window.size() / 2];
+          return step < improving ? solver->improve(window, step < turns) : solver->rescue(window);
+        });
   }
 
   using Last = Step<InverseLayer, MaskLayer>;

@@ -6,7 +6,6 @@
 #include <memory>
 
 #include "slicer/effects/model.h"
-#include "slicer/enhance/inverse.h"
 #include "slicer/grid.h"
 #include "slicer/mesh/mesh.h"
 #include "slicer/run_layer.h"
@@ -14,6 +13,8 @@
 #include "slicer/voxelize.h"
 
 namespace binderjet {
+
+class InverseSolver;  // slicer/enhance/inverse.h
 
 struct MaskLayer {
   RunLayer mask;              // at the printer grid
@@ -40,7 +41,8 @@ std::unique_ptr<Stream<MaskLayer>> paper_masks(TargetFrom target_from, const Gri
                                                int passes);
 
 // The masks that print nearest to the target (slicer/enhance/inverse.h). A model whose binder
-// crosses layers takes turns: layers that share no print are improved together, twice over.
+// crosses layers takes turns: layers that share no print are improved together, twice over. Then
+// those in which features vanish are searched again with the neighbours' prints known, twice too.
 std::unique_ptr<Stream<MaskLayer>> inverse_masks(TargetFrom target_from, LayerRange layers,
                                                  int job_layers,
                                                  std::shared_ptr<const InverseSolver> solver);

@@ -8,50 +8,44 @@
 // mask that prints any layer worse than the plain masks do is dropped.
 #pragma once
 
-#include <array>
+#include <algorithm>
 #include <memory>
-#include <span>
 #include <vector>
 
 #include "slicer/effects/model.h"
+#include "slicer/enhance/inverse_layer.h"
+#include "slicer/enhance/layer_search.h"
 #include "slicer/enhance/mask_rules.h"
-#include "slicer/enhance/stamp.h"
 #include "slicer/grid.h"
-#include "slicer/run_layer.h"
-#include "slicer/stream.h"
-#include "slicer/voxelize.h"
 
 namespace binderjet {
 
-// A layer on its way: shared, for most steps change one of its parts only.
-struct InverseLayer {
-  Shared<VoxelLayer> target;
-  Shared<RunLayer> plain;  // its mask without enhancement
-  Shared<RunLayer> mask;   // its mask so far; obeys the rules
-};
-
 class InverseSolver {
  public:
-  // The first model is the printer, the others are what it may drift to (process_window()); with
-  // one model only that counts.
+  // The first model is the printer, the others are what it may drift to (process_window()); alone,
+  // only the first counts.
   InverseSolver(std::vector<PrinterModel> window, const Grid& grid, const MaskRules& rules);
 
-  // How many layers on each side of a layer improve() looks at.
-  int reach() const { return 2 * models_.front().window_reach(); }
+  // How many layers on each side of a layer improve() and rescue() look at.
+  int reach() const { return std::max(2, 2 * model_.window_reach()); }
   // Layers so many apart (or a multiple) print into no common layer, so all of them may be improved
   // at once and none spoils what another one saw.
   int stride() const { return stride_; }
 
+  // A layer with its plain mask, or what the rules leave of it.
   InverseLayer plain(Shared<VoxelLayer> target) const;
-  // The middle one of 2 reach() + 1 layers, null beyond the job's ends; `anew` forgets its mask so
-  // far. No layer prints worse than with plain masks, if none did before (nominal model, voxels).
-  InverseLayer improve(std::span<const Shared<InverseLayer>> layers, bool anew) const;
+  // The middle layer with a better mask; `anew` forgets its mask so far. No layer prints worse than
+  // with plain masks, unless it did before (nominal model, wrong voxels).
+  InverseLayer improve(LayerWindow layers, bool anew) const;
+  // The same with fewer voxels of lost and fused features (slicer/features.h), if there are any.
+  InverseLayer rescue(LayerWindow layers) const;
 
  private:
-  std::vector<PrinterModel> models_;
-  Grid grid_;
-  MaskRules rules_;
-  std::vector<StampedModel> stamped_;
+  bool acceptable(LayerWindow layers, const RunLayer& mask) const;
+  LayerFeatures vanished(LayerWindow layers, const RunLayer& mask) const;
+
+  PrinterModel model_;
+  SearchModel search_;
   int stride_ = 1;
 };
 

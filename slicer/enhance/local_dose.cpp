@@ -22,6 +22,8 @@ struct StampOverlay {
 
 namespace {
 
+constexpr int kWeighShift = 10;
+
 int floor_div(int a, int b) { return a >= 0 ? a / b : -((b - 1 - a) / b); }
 
 // The cost of the voxels that reach `least` with the stamp, less that of those that do without.
@@ -51,6 +53,32 @@ void add_stamp(const Stamp& stamp, int* dose, std::ptrdiff_t stride, int sign) {
   }
 }
 
+// The stamps of an endless row of pixels, from the first one's corner on, `length` voxels beyond a
+// stamp's own.
+Plane<int> half_line(const Stamp& stamp, int length, int repeat) {
+  Plane<int> line(Rect{0, 0, stamp.width + length, stamp.height});
+  for (int y = 0; y < stamp.height; ++y) {
+    const int* from = stamp.dose.data() + static_cast<std::ptrdiff_t>(y) * stamp.width;
+    int* to = line.at(0, y);
+    for (int x = 0; x < stamp.width + length; ++x) {
+      to[x] = (x < stamp.width ? from[x] : 0) + (x < repeat ? 0 : to[x - repeat]);
+    }
+  }
+  return line;
+}
+
+// Adds the stamps of a run of pixels that is `length` voxels long: the half-line at its first less
+// that behind its last.
+BINDERJET_VECTOR_CLONES
+void add_run(const Plane<int>& line, int length, int width, int* dose, std::ptrdiff_t stride) {
+  for (int y = 0; y < line.rect().height(); ++y) {
+    const int* from = line.at(0, y);
+    for (int x = 0; x < length + width; ++x) dose[x] += from[x];
+    for (int x = 0; x < width; ++x) dose[length + x] -= from[x];
+    dose += stride;
+  }
+}
+
 // The costs that a stamp has binder for, and its binder by cost.
 BINDERJET_VECTOR_CLONES
 void weigh(const Stamp& stamp, const int* cost, std::ptrdiff_t stride, int& least, int& most,
@@ -58,19 +86,20 @@ void weigh(const Stamp& stamp, const int* cost, std::ptrdiff_t stride, int& leas
   const int* from = stamp.dose.data();
   int low = least;
   int high = most;
-  std::int64_t sum = 0;
   for (int y = 0; y < stamp.height; ++y) {
+    int sum = 0;
     for (int x = 0; x < stamp.width; ++x) {
       low = std::min(low, from[x] != 0 ? cost[x] : low);
       high = std::max(high, from[x] != 0 ? cost[x] : high);
-      sum += static_cast<std::int64_t>(from[x]) * cost[x];
+      // Whole rows of the largest stamp and cost stay within an int.
+      sum += (from[x] >> kWeighShift) * cost[x];
     }
     from += stamp.width;
     cost += stride;
+    weighted += static_cast<double>(sum) * (1 << kWeighShift);
   }
   least = low;
   most = high;
-  weighted += static_cast<double>(sum);
 }
 
 }  // namespace
@@ -121,12 +150,16 @@ void LocalDose::reset() {
   for (Field& field : fields_) {
     field.dose.reset(doses, 0);
     for (const Stamp& stamp : field.model->stamps) {
+      const Plane<int> line = half_line(stamp, masks_.width() * repeat_[0], repeat_[0]);
       const Plane<std::uint8_t>& mask = around_.mask(stamp.layer - field.stamp->layer);
       for (int y = masks_.y0; y < masks_.y1; ++y) {
         const std::uint8_t* row = mask.at(masks_.x0, y) - masks_.x0;
         for (int x = masks_.x0; x < masks_.x1; ++x) {
           if (row[x] == 0) continue;
-          add_stamp(stamp, under(field.dose, stamp, x, y), field.dose.stride(), 1);
+          const int begin = x;
+          while (x < masks_.x1 && row[x] != 0) ++x;
+          add_run(line, (x - begin) * repeat_[0], stamp.width, under(field.dose, stamp, begin, y),
+                  field.dose.stride());
         }
       }
     }

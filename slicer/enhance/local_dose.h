@@ -49,6 +49,11 @@ class LocalDose {
   // How far apart, in pixels, two pixels may be that reach the same voxel.
   std::array<int, 2> pixel_reach() const;
 
+  // The voxels that pixel (x, y) may have binder for.
+  Rect voxels_of(int x, int y) const {
+    return {x * repeat_[0] + first_[0], y * repeat_[1] + first_[1], x * repeat_[0] + last_[0],
+            y * repeat_[1] + last_[1]};
+  }
   PixelSight sight(int x, int y) const;
 
   // Computes the doses from the masks as they are. Before it sight() is all there is.

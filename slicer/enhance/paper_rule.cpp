@@ -156,9 +156,10 @@ BINDERJET_VECTOR_CLONES void sum_3x3(const Words& words, Sums& sums) {
 using Toggles = std::array<std::uint64_t, kRows>;
 
 // What the rule changes in one slice of a tile.
-BINDERJET_VECTOR_CLONES void apply_rule(const std::array<const Sums*, 3>& printed, const std::array<const Sums*, 3>& target,
-                const Words& below, const Words& volume, const Words& above, std::uint64_t columns,
-                Toggles& toggles) {
+BINDERJET_VECTOR_CLONES void apply_rule(const std::array<const Sums*, 3>& printed,
+                                        const std::array<const Sums*, 3>& target,
+                                        const Words& below, const Words& volume, const Words& above,
+                                        std::uint64_t columns, Toggles& toggles) {
   const auto number = [](const Sums& sums, std::size_t r) {
     return bits::Number<4>{sums.plane[0][r], sums.plane[1][r], sums.plane[2][r], sums.plane[3][r]};
   };
