@@ -90,7 +90,7 @@ std::unique_ptr<Stream<MaskLayer>> inverse_masks(TargetFrom target_from, LayerRa
                                                  std::shared_ptr<const InverseSolver> solver) {
   const int turns = solver->stride();
   const int improving = turns * (turns == 1 ? 1 : 2);
-  const int steps = improving + 2 * turns;
+  const int steps = improving + 3 * turns;
   const auto range_with = [&](int steps_left) {
     return grown(layers, steps_left * solver->reach(), job_layers);
   };

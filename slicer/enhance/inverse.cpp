@@ -14,8 +14,6 @@ namespace {
 // A wrong voxel of the nominal model counts twice one of a corner of the window: this halves the
 // nominal error of equal weights and costs the window's worst case a hundredth.
 constexpr int kNominalWeight = 2;
-// A voxel of a feature that vanished counts this much more than others of its slice.
-constexpr int kStress = 8;
 
 std::vector<StampedModel> weighted(const std::vector<PrinterModel>& models, const Grid& grid) {
   std::vector<int> weights(models.size(), 1);
@@ -55,13 +53,15 @@ InverseSolver::InverseSolver(std::vector<PrinterModel> window, const Grid& grid,
 InverseLayer InverseSolver::plain(Shared<VoxelLayer> target) const {
   auto sliced = std::make_shared<const RunLayer>(slicing_operator(*target, search_.grid));
   const int most = search_.rules.most();
-  if (most <= 1) return {std::move(target), sliced, sliced};
+  if (most <= 1) return {std::move(target), sliced, sliced, {}};
   const Rect box{0, 0, sliced->width(), sliced->height()};
   Plane<std::uint8_t> mask(box.grown(most, most));
   add_layer(*sliced, std::uint8_t{1}, mask);
   obey(search_.rules, box, mask);
-  return {std::move(target), sliced,
-          std::make_shared<const RunLayer>(to_layer(mask, sliced->width(), sliced->height()))};
+  return {std::move(target),
+          sliced,
+          std::make_shared<const RunLayer>(to_layer(mask, sliced->width(), sliced->height())),
+          {}};
 }
 
 InverseLayer InverseSolver::improve(LayerWindow layers, bool anew) const {
@@ -75,12 +75,15 @@ InverseLayer InverseSolver::improve(LayerWindow layers, bool anew) const {
 
 InverseLayer InverseSolver::rescue(LayerWindow layers) const {
   InverseLayer out = *layer_at(layers, 0);
-  const LayerFeatures gone = vanished(layers, *out.mask);
-  if (voxels(gone) == 0) return out;
-  LayerSearch search(search_, layers);
-  search.rescue(gone, kStress);
+  auto gone = std::make_shared<const LayerFeatures>(vanished(layers, *out.mask));
+  if (voxels(*gone) == 0) return out;
+  out.stressed.push_back(gone);
+  std::vector<Shared<InverseLayer>> with_stress(layers.begin(), layers.end());
+  with_stress[layers.size() / 2] = std::make_shared<const InverseLayer>(out);
+  LayerSearch search(search_, with_stress);
+  search.run_near(*gone);
   auto mask = std::make_shared<const RunLayer>(search.mask());
-  if (voxels(vanished(layers, *mask)) < voxels(gone) && acceptable(layers, *mask)) {
+  if (voxels(vanished(layers, *mask)) < voxels(*gone) && acceptable(layers, *mask)) {
     out.mask = std::move(mask);
   }
   return out;

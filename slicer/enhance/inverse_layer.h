@@ -4,8 +4,10 @@
 
 #include <set>
 #include <span>
+#include <vector>
 
 #include "slicer/effects/model.h"
+#include "slicer/features.h"
 #include "slicer/run_layer.h"
 #include "slicer/stream.h"
 #include "slicer/voxelize.h"
@@ -17,6 +19,8 @@ struct InverseLayer {
   Shared<VoxelLayer> target;
   Shared<RunLayer> plain;  // its mask without enhancement
   Shared<RunLayer> mask;   // its mask so far; obeys the rules
+  // Features that have vanished from its print before and shall not again.
+  std::vector<Shared<LayerFeatures>> stressed;
 };
 
 // An odd number of layers, null beyond the job's ends; offsets are from the middle one.

@@ -26,7 +26,7 @@ PixelSight look(const LocalDose& dose, const Surroundings& around,
   PixelSight sight{std::numeric_limits<int>::max(), std::numeric_limits<int>::min(), 0};
   for (const auto& [offset, change] : changes) {
     if (!change.uniform(reach)) return dose.sight(x, y);
-    const int cost = *around.cost(offset).at(reach.x0, reach.y0);
+    const int cost = *around.cost(offset, true).at(reach.x0, reach.y0);
     sight.least_cost = std::min(sight.least_cost, cost);
     sight.most_cost = std::max(sight.most_cost, cost);
   }
@@ -79,9 +79,7 @@ void LayerSearch::find_tiles() {
 
 void LayerSearch::run(bool anew) { search(tiles_, anew); }
 
-void LayerSearch::rescue(const LayerFeatures& features, int stress) {
-  stressed_ = features;
-  stress_ = stress;
+void LayerSearch::run_near(const LayerFeatures& features) {
   std::vector<Tile> near;
   for (const Tile& tile : tiles_) {
     const std::array<int, 2> r{by_.grid.detail_vx[0], by_.grid.detail_vx[1]};
@@ -106,9 +104,9 @@ void LayerSearch::search(std::span<Tile> tiles, bool anew) {
 void LayerSearch::look_over(Tile& tile, bool anew) {
   TileSurroundings around(layers_, by_.offsets, mask_);
   const LocalDose dose(by_.models, by_.grid, tile.rect, around);
-  around.look_at(dose, stressed_, stress_);
+  around.look_at(dose);
   std::map<int, ChangeCount> changes;
-  for (const int offset : by_.offsets.printed) changes.emplace(offset, around.cost(offset));
+  for (const int offset : by_.offsets.printed) changes.emplace(offset, around.cost(offset, true));
   tile.pixels.clear();
   for (int y = tile.rect.y0; y < tile.rect.y1; ++y) {
     for (int x = tile.rect.x0; x < tile.rect.x1; ++x) {
@@ -124,7 +122,7 @@ void LayerSearch::search(const Tile& tile) {
   if (tile.pixels.empty()) return;
   TileSurroundings around(layers_, by_.offsets, mask_);
   LocalDose dose(by_.models, by_.grid, tile.rect, around);
-  around.look_at(dose, stressed_, stress_);
+  around.look_at(dose);
   dose.reset();
   PixelSearch(dose, mask_, tile.pixels, by_.rules).run(kMostSweeps);
 }

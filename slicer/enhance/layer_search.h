@@ -33,9 +33,8 @@ class LayerSearch {
 
   // Searches the whole layer; `anew` forgets its mask so far.
   void run(bool anew);
-  // Searches anew around features of the layer (slice by slice) that have come out wrong; their
-  // voxels count `stress` more than others, so that the search keeps them.
-  void rescue(const LayerFeatures& features, int stress);
+  // Searches anew where pixels reach these features (of the layer, slice by slice).
+  void run_near(const LayerFeatures& features);
 
   RunLayer mask() const { return to_layer(mask_, box_.x1, box_.y1); }
 
@@ -52,8 +51,6 @@ class LayerSearch {
 
   const SearchModel& by_;
   LayerWindow layers_;
-  LayerFeatures stressed_;
-  int stress_ = 0;
   Rect box_;
   Rect reach_vx_;  // of the pixel at (0, 0)
   Plane<std::uint8_t> mask_;

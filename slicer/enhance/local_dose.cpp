@@ -22,7 +22,7 @@ struct StampOverlay {
 
 namespace {
 
-constexpr int kWeighShift = 10;
+constexpr int kWeighShift = 14;
 
 int floor_div(int a, int b) { return a >= 0 ? a / b : -((b - 1 - a) / b); }
 
@@ -106,10 +106,10 @@ void weigh(const Stamp& stamp, const int* cost, std::ptrdiff_t stride, int& leas
 
 LocalDose::LocalDose(std::span<const StampedModel> models, const Grid& grid, const Rect& tile,
                      const Surroundings& around)
-    : repeat_{grid.detail_vx[0], grid.detail_vx[1]}, around_(around) {
+    : repeat_{grid.detail_vx[0], grid.detail_vx[1]}, slices_(grid.detail_vx[2]), around_(around) {
   for (const StampedModel& model : models) {
     for (const Stamp& stamp : model.stamps) {
-      fields_.push_back({&model, &stamp, {}});
+      fields_.push_back({&model, &stamp, {}, &model == &models.front()});
       first_ = {std::min(first_[0], stamp.first[0]), std::min(first_[1], stamp.first[1])};
       last_ = {std::max(last_[0], stamp.first[0] + stamp.width),
                std::max(last_[1], stamp.first[1] + stamp.height)};
@@ -132,15 +132,15 @@ PixelSight LocalDose::sight(int x, int y) const {
   double weighted = 0;
   double binder = 0;
   for (const Field& field : fields_) {
-    const Plane<int>& cost = around_.cost(-field.stamp->layer);
+    const Plane<int>& costs = cost(field);
     double by_cost = 0;
-    weigh(*field.stamp, under(cost, *field.stamp, x, y), cost.stride(), sight.least_cost,
+    weigh(*field.stamp, under(costs, *field.stamp, x, y), costs.stride(), sight.least_cost,
           sight.most_cost, by_cost);
-    if (field.model != fields_.front().model) continue;
+    if (!field.nominal) continue;
     weighted += by_cost;
     binder += field.stamp->total;
   }
-  sight.wanted = 0.5 - 0.5 * weighted / binder;
+  sight.wanted = 0.5 - 0.5 * weighted / (binder * slices_);
   return sight;
 }
 
@@ -167,14 +167,14 @@ void LocalDose::reset() {
 }
 
 StampOverlay LocalDose::overlay(const Field& field, int x, int y, int sign) const {
-  const Plane<int>& cost = around_.cost(-field.stamp->layer);
+  const Plane<int>& costs = cost(field);
   return {field.stamp->dose.data(),
           under(field.dose, *field.stamp, x, y),
-          under(cost, *field.stamp, x, y),
+          under(costs, *field.stamp, x, y),
           field.stamp->width,
           field.stamp->height,
           field.dose.stride(),
-          cost.stride(),
+          costs.stride(),
           sign < 0 ? -1 : 0};
 }
 

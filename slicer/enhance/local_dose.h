@@ -21,8 +21,8 @@ class Surroundings {
  public:
   virtual ~Surroundings() = default;
   // What a printed voxel costs more than one that is not: its slices of powder minus those of the
-  // target. On voxels, at least LocalDose::voxel_rect().
-  virtual const Plane<int>& cost(int layer) const = 0;
+  // target, under the nominal model or the others. On voxels, at least LocalDose::voxel_rect().
+  virtual const Plane<int>& cost(int layer, bool nominal) const = 0;
   // At least LocalDose::mask_rect() of the layer's mask as it is.
   virtual const Plane<std::uint8_t>& mask(int layer) const = 0;
 };
@@ -71,7 +71,11 @@ class LocalDose {
     const StampedModel* model;
     const Stamp* stamp;  // of a flip
     Plane<int> dose;
+    bool nominal;
   };
+  const Plane<int>& cost(const Field& field) const {
+    return around_.cost(-field.stamp->layer, field.nominal);
+  }
 
   // Where the stamp of pixel (x, y) begins.
   template <class P>
@@ -81,6 +85,7 @@ class LocalDose {
   StampOverlay overlay(const Field& field, int x, int y, int sign) const;
 
   std::array<int, 2> repeat_;
+  int slices_;
   const Surroundings& around_;
   std::array<int, 2> first_{};  // the corners of all stamps together
   std::array<int, 2> last_{};

@@ -3,7 +3,7 @@
 
 namespace binderjet {
 
-void TileSurroundings::look_at(const LocalDose& dose, const LayerFeatures& features, int stress) {
+void TileSurroundings::look_at(const LocalDose& dose) {
   const auto slices = static_cast<int>(layer_at(layers_, 0)->target->slices.size());
   for (const int offset : offsets_.printed) {
     const InverseLayer* layer = layer_at(layers_, offset);
@@ -12,9 +12,12 @@ void TileSurroundings::look_at(const LocalDose& dose, const LayerFeatures& featu
     cost.reset(dose.voxel_rect(), layer == nullptr ? 0 : slices);
     if (layer == nullptr) continue;
     for (const RunLayer& slice : layer->target->slices) add_layer(slice, -2, cost);
-    if (offset != 0) continue;
-    for (const RunLayer& slice : features.lost) add_layer(slice, -stress, cost);
-    for (const RunLayer& slice : features.fused) add_layer(slice, stress, cost);
+    if (offset != 0 || layer->stressed.empty()) continue;
+    stressed_ = cost;
+    for (const Shared<LayerFeatures>& features : layer->stressed) {
+      for (const RunLayer& slice : features->lost) add_layer(slice, -kStress, *stressed_);
+      for (const RunLayer& slice : features->fused) add_layer(slice, kStress, *stressed_);
+    }
   }
   for (const int offset : offsets_.masks) {
     if (offset == 0) continue;
