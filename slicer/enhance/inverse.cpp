@@ -2,9 +2,11 @@
 #include "slicer/enhance/inverse.h"
 
 #include <cstdint>
+#include <numeric>
 #include <optional>
 #include <utility>
 
+#include "slicer/enhance/tile_surroundings.h"
 #include "slicer/score.h"
 #include "slicer/slicing_operator.h"
 
@@ -87,6 +89,44 @@ InverseLayer InverseSolver::rescue(LayerWindow layers) const {
     out.mask = std::move(mask);
   }
   return out;
+}
+
+PixelReasons InverseSolver::reasons(LayerWindow layers, int x, int y) const {
+  const auto [rx, ry, rz] = search_.grid.detail_vx;
+  const Rect pixel{x, y, x + 1, y + 1};
+  const Rect voxels{x * rx, y * ry, (x + 1) * rx, (y + 1) * ry};
+  Plane<std::uint8_t> mask;
+  TileSurroundings around(layers, search_.offsets, mask);
+  LocalDose dose(search_.models, search_.grid, pixel, around);
+  mask.reset(dose.mask_rect().grown(search_.rules.most(), search_.rules.most()), 0);
+  add_layer(*layer_at(layers, 0)->mask, std::uint8_t{1}, mask);
+  around.look_at(dose);
+  dose.reset();
+
+  PixelReasons why;
+  std::uint8_t& state = *mask.at(x, y);
+  const int sign = state != 0 ? -1 : 1;
+  why.on = state != 0;
+  why.level = model_.form().level;
+  Plane<int> solid(voxels);
+  for (const RunLayer& slice : layer_at(layers, 0)->target->slices) add_layer(slice, 1, solid);
+  const auto doses = [&] {
+    std::vector<double> out;
+    for (int v = voxels.y0; v < voxels.y1; ++v) {
+      for (int u = voxels.x0; u < voxels.x1; ++u) out.push_back(dose.dose(u, v));
+    }
+    return out;
+  };
+  const int* first = solid.at(voxels.x0, voxels.y0);
+  why.target_share = std::accumulate(first, first + rx * ry, 0.0) / (rx * ry * rz);
+  why.nominal_cost = dose.nominal_cost(x, y, sign);
+  why.window_cost = dose.flip_cost(x, y, sign);
+  why.dose = doses();
+  dose.flip(x, y, sign);
+  state ^= 1;
+  why.dose_flipped = doses();
+  why.rules_allow = RuleCheck(search_.rules).fits_around(mask, x, y);
+  return why;
 }
 
 bool InverseSolver::acceptable(LayerWindow layers, const RunLayer& mask) const {

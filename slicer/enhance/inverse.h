@@ -20,6 +20,18 @@
 
 namespace binderjet {
 
+// Why a pixel is on or off.
+struct PixelReasons {
+  bool on = false;
+  double target_share = 0;           // of its voxels
+  double level = 0;                  // at which powder binds
+  std::vector<double> dose;          // of its voxels, row by row
+  std::vector<double> dose_flipped;  // the same if the pixel were in the other state
+  int nominal_cost = 0;              // how many more voxels were wrong then
+  int window_cost = 0;               // and by weight over the process window
+  bool rules_allow = true;           // it to be in the other state
+};
+
 class InverseSolver {
  public:
   // The first model is the printer, the others are what it may drift to (process_window()); alone,
@@ -39,6 +51,8 @@ class InverseSolver {
   InverseLayer improve(LayerWindow layers, bool anew) const;
   // The same with fewer voxels of lost and fused features (slicer/features.h), if there are any.
   InverseLayer rescue(LayerWindow layers) const;
+  // Of pixel (x, y) of the middle layer, its mask so far.
+  PixelReasons reasons(LayerWindow layers, int x, int y) const;
 
  private:
   bool acceptable(LayerWindow layers, const RunLayer& mask) const;

@@ -188,6 +188,15 @@ int LocalDose::flip_cost(int x, int y, int sign) const {
   return sum * sign;
 }
 
+int LocalDose::nominal_cost(int x, int y, int sign) const {
+  int sum = 0;
+  for (const Field& field : fields_) {
+    if (!field.nominal) continue;
+    sum += lifted_cost(overlay(field, x, y, sign), field.model->levels.front().least);
+  }
+  return sum * sign;
+}
+
 void LocalDose::flip(int x, int y, int sign) {
   for (Field& field : fields_) {
     add_stamp(*field.stamp, under(field.dose, *field.stamp, x, y), field.dose.stride(), sign);

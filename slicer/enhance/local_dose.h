@@ -61,6 +61,8 @@ class LocalDose {
   // What the weighted count of wrong voxels grows by when pixel (x, y) is set (sign 1) or cleared
   // (sign -1).
   int flip_cost(int x, int y, int sign) const;
+  // The same for the nominal model's own level alone, in voxels.
+  int nominal_cost(int x, int y, int sign) const;
   void flip(int x, int y, int sign);
   // The nominal dose of a voxel of the layer itself, 0 to 1.
   double dose(int x_vx, int y_vx) const;
