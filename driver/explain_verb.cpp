@@ -92,7 +92,7 @@ void add_explain_verb(CLI::App& program) {
   CLI::App* verb = program.add_subcommand("explain", "say why a pixel of a mask is on or off");
   auto options = std::make_shared<ExplainOptions>();
   verb->add_option("JOB", options->job, "a job (.bjob)")->required();
-  verb->add_option("X,Y,LAYER", options->pixel, "the pixel, counted from the job's lower corner")
+  verb->add_option("PIXEL", options->pixel, "X,Y,LAYER, counted from the job's lower corner")
       ->required()
       ->delimiter(',')
       ->expected(3);

@@ -61,6 +61,7 @@ class TileMarks {
 
 std::vector<Rect> active_tiles(std::span<const RunLayer* const> slices, const Grid& grid,
                                std::array<int, 2> reach_vx) {
+  if (slices.empty()) return {};
   const RunLayer& front = *slices.front();
   TileMarks marks(front.width(), front.height(), grid, reach_vx);
   std::vector<int> changes;
