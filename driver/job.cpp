@@ -9,6 +9,8 @@
 #include <utility>
 
 #include "driver/files.h"
+#include "slicer/effects/process_window.h"
+#include "slicer/enhance/inverse.h"
 #include "slicer/error.h"
 #include "slicer/mesh/read_mesh.h"
 #include "slicer/mesh/repair.h"
@@ -81,6 +83,7 @@ std::string to_text(const JobHeader& header) {
                  {"hash", text_hash(header.profile.text)},
                  {"text", header.profile.text}}}};
   // Only where it is, so that plain jobs stay byte for byte what they were.
+  if (header.enhance == "inverse") json["robust"] = header.robust;
   if (header.color) json["color"] = {{"enhanced", header.color_enhanced}};
   return json.dump();
 }
@@ -90,8 +93,15 @@ std::unique_ptr<Stream<MaskLayer>> mask_stream(const JobHeader& header,
                                                LayerRange layers) {
   if (header.enhance == "none")
     return plain_masks(std::move(mesh), header.grid, header.box, layers);
-  auto model = std::make_shared<const PrinterModel>(header.profile.effects, header.grid,
-                                                    place_of(header.box, header.grid));
+  const JobPlace place = place_of(header.box, header.grid);
+  if (header.enhance == "inverse") {
+    std::vector<PrinterModel> window = process_window(header.profile.effects, header.grid, place);
+    if (!header.robust) window.resize(1, window.front());
+    auto solver =
+        std::make_shared<const InverseSolver>(std::move(window), header.grid, header.profile.mask);
+    return inverse_masks(std::move(mesh), header.grid, header.box, layers, std::move(solver));
+  }
+  auto model = std::make_shared<const PrinterModel>(header.profile.effects, header.grid, place);
   return paper_masks(std::move(mesh), header.grid, header.box, layers, std::move(model),
                      header.passes);
 }
@@ -113,6 +123,7 @@ JobHeader parse_job_header(const std::string& text, const std::string& where) {
     json.at("detail_vx").get_to(header.grid.detail_vx);
     json.at("enhance").get_to(header.enhance);
     json.at("passes").get_to(header.passes);
+    header.robust = json.value("robust", true);
     header.color = json.contains("color");
     if (header.color) json.at("color").at("enhanced").get_to(header.color_enhanced);
     for (const Json& source : json.at("sources")) header.sources.push_back(source_of(source));

@@ -32,6 +32,7 @@ struct JobHeader {
   JobBox box;
   std::string enhance = "none";
   int passes = 0;
+  bool robust = true;           // inverse: for the process window, not for the nominal model only
   bool color = false;           // it has color records
   bool color_enhanced = false;  // with creases darkened
   std::vector<Source> sources;

@@ -19,6 +19,7 @@ int main(int argc, char** argv) {
   add_export_verb(program);
   add_simulate_verb(program);
   add_score_verb(program);
+  add_explain_verb(program);
   add_coupon_verb(program);
   add_calibrate_verb(program);
   add_join_verb(program);

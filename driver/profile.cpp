@@ -56,6 +56,12 @@ class Table {
     }
     return values;
   }
+  // From 1 to `max`.
+  int whole_number(const std::string& key, int max) {
+    const double value = numbers(key, 1, 0, max).front();
+    if (value != std::floor(value)) fail(need(key).source(), key + " must be a whole number");
+    return static_cast<int>(value);
+  }
   std::vector<double> numbers_of(const toml::node& node, const std::string& key) const {
     std::vector<double> values;
     const auto take = [&](const toml::node& one) {
@@ -145,16 +151,20 @@ void parse_device(Table table, Profile& profile) {
   table.no_other_keys();
 }
 
+MaskRules parse_mask(Table table) {
+  MaskRules rules;
+  constexpr int kMostPx = 64;
+  if (table.has("min_island_px"))
+    rules.min_island_px = table.whole_number("min_island_px", kMostPx);
+  if (table.has("min_hole_px")) rules.min_hole_px = table.whole_number("min_hole_px", kMostPx);
+  table.no_other_keys();
+  return rules;
+}
+
 ColorSettings parse_color(Table table) {
   ColorSettings color;
   if (table.has("depth_mm")) color.depth_mm = table.numbers("depth_mm", 1, -1e-9, 5).front();
-  if (table.has("neighbors")) {
-    const double count = table.numbers("neighbors", 1, 0, 64).front();
-    color.neighbors = static_cast<int>(count);
-    if (color.neighbors != count || count < 1) {
-      table.fail(table.need("neighbors").source(), "neighbors must be a whole number");
-    }
-  }
+  if (table.has("neighbors")) color.neighbors = table.whole_number("neighbors", 64);
   if (table.has("crease_strength")) {
     color.crease_strength = table.numbers("crease_strength", 1, -1e-9, 1).front();
   }
@@ -265,6 +275,7 @@ Profile parse_profile(const std::string& text, const std::string& path) {
     profile.binder_per_powder = binder.numbers("per_powder", 1, 0, 1).front();
     binder.no_other_keys();
   }
+  if (root.has("mask")) profile.mask = parse_mask(root.table("mask"));
   if (root.has("color")) profile.color = parse_color(root.table("color"));
   parse_device(root.table("device"), profile);
   root.no_other_keys();

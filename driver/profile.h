@@ -9,6 +9,7 @@
 
 #include "slicer/color/color.h"
 #include "slicer/effects/effect.h"
+#include "slicer/enhance/mask_rules.h"
 #include "slicer/grid.h"
 #include "slicer/mesh/place.h"
 
@@ -30,6 +31,7 @@ struct Profile {
   // Manuf. 39:101870, table 2) is 0.36, 90 % of the pores of powder packed at 60 %. An estimate
   // where [binder] does not say better.
   double binder_per_powder = 0.36;
+  MaskRules mask;
   ColorSettings color;
   std::string protocol;
   std::vector<std::string> usb;  // "vid:pid", then words of transport/usb_quirks.h

@@ -5,16 +5,18 @@
 
 #include <CLI/CLI.hpp>
 #include <memory>
+#include <nlohmann/json.hpp>
 #include <optional>
 #include <string>
 #include <vector>
 
 #include "driver/console.h"
-#include "driver/printed.h"
+#include "driver/mask_source.h"
 #include "driver/score_map.h"
+#include "driver/score_sheet.h"
 #include "driver/verbs.h"
+#include "slicer/effects/process_window.h"
 #include "slicer/error.h"
-#include "slicer/score_stream.h"
 
 namespace binderjet {
 namespace {
@@ -24,6 +26,7 @@ struct ScoreOptions {
   std::vector<std::string> targets;
   std::string profile;
   std::string map;
+  bool compare = false;
 };
 
 // The target as the job placed its own parts, read from the files named now.
@@ -42,59 +45,62 @@ std::shared_ptr<const Mesh> load_target(const ScoreOptions& options, const JobHe
   return std::make_shared<const Mesh>(merge_parts(std::move(parts), header.grid));
 }
 
-void report(const Score& sum, const Console& console) {
-  const VoxelCounts& counts = sum.voxels();
-  const EdgeErrors& edges = sum.edges();
-  console.result(
-      {{"solid_voxels", counts.solid},
-       {"wrong", counts.wrong()},
-       {"floor", counts.floor()},
-       {"excess", counts.excess()},
-       {"epe_mm", {{"mean", edges.mean_mm()}, {"p95", edges.p95_mm()}, {"max", edges.max_mm()}}},
-       {"lost", sum.lost()},
-       {"fused", sum.fused()},
-       {"spurious", sum.spurious()}},
-      fmt::format("wrong {:.4f} of {} solid voxels, {:.4f} of it unavoidable at this layer height, "
-                  "excess {:.4f}\nedges off by {:.3f} mm on average, 95 % by less than {:.3f} mm, "
-                  "at most {:.3f} mm\nfeatures: {} lost, {} fused, {} spurious",
-                  counts.wrong(), counts.solid, counts.floor(), counts.excess(), edges.mean_mm(),
-                  edges.p95_mm(), edges.max_mm(), sum.lost(), sum.fused(), sum.spurious()));
+std::string text_of(const ScoreSheet& sheet) {
+  const VoxelCounts& counts = sheet.score.voxels();
+  const EdgeErrors& edges = sheet.score.edges();
+  return fmt::format(
+      "wrong {:.4f} of {} solid voxels, {:.4f} of it unavoidable at this layer height, "
+      "excess {:.4f}\nif the printer is a little off: excess {:.4f} on average, at worst {:.4f}\n"
+      "edges off by {:.3f} mm on average, 95 % by less than {:.3f} mm, "
+      "at most {:.3f} mm\nfeatures: {} lost, {} fused, {} spurious",
+      counts.wrong(), counts.solid, counts.floor(), counts.excess(), sheet.window_mean,
+      sheet.window_worst, edges.mean_mm(), edges.p95_mm(), edges.max_mm(), sheet.score.lost(),
+      sheet.score.fused(), sheet.score.spurious());
+}
+
+std::string table_row(const std::string& enhance, const ScoreSheet& sheet) {
+  return fmt::format("\n{:8} {:7.4f} {:7.4f} {:7.4f} {:8.3f} {:5} {:5} {:8}", enhance,
+                     sheet.score.voxels().excess(), sheet.window_mean, sheet.window_worst,
+                     sheet.score.edges().mean_mm(), sheet.score.lost(), sheet.score.fused(),
+                     sheet.score.spurious());
 }
 
 void score(const ScoreOptions& options, const Console& console) {
   const MaskSource job = open_job(options.job, console);
   const JobHeader& header = *job.header;
   const Profile profile = options.profile.empty() ? header.profile : load_profile(options.profile);
-  const PrinterModel model(profile.effects, header.grid, job.place());
-  const auto layers =
-      score_layers(voxelize(load_target(options, header), header.grid, header.box, job.layers()),
-                   printed_stream(job, model), header.grid, job.layers());
+  const std::vector<PrinterModel> models =
+      process_window(profile.effects, header.grid, job.place());
+  const auto target = load_target(options, header);
 
   std::optional<ScoreMap> map;
   if (!options.map.empty()) map.emplace(options.map, job, header.grid);
-  Score sum(header.grid, job.first);
-  Progress progress(console, "scoring", job.size_px[2]);
   int done = 0;
-  while (layers->rest().size() > 0) {
-    const auto block = layers->next(kBlockLayers);
-    if (map) {
-      oneapi::tbb::parallel_for(0, static_cast<int>(block.size()), [&](int i) {
-        map->write(done + i, *block[static_cast<std::size_t>(i)]);
-      });
-    }
-    for (const Shared<LayerScore>& layer : block) {
-      const std::vector<Feature> ended = sum.add(*layer);
-      if (map) map->add(ended);
-    }
-    done += static_cast<int>(block.size());
-    progress.advance(done);
-  }
-  const std::vector<Feature> ended = sum.finish();
-  if (map) {
+  const auto draw = [&](const std::vector<Shared<LayerScore>>& layers,
+                        const std::vector<Feature>& ended) {
+    if (!map) return;
+    oneapi::tbb::parallel_for(0, static_cast<int>(layers.size()), [&](int i) {
+      map->write(done + i, *layers[static_cast<std::size_t>(i)]);
+    });
+    done += static_cast<int>(layers.size());
     map->add(ended);
-    map->finish(sum);
+  };
+  const ScoreSheet own = score_masks(job, header, target, models, "scoring", console, draw);
+  if (map) map->finish(own.score);
+
+  nlohmann::ordered_json json = to_json(own);
+  std::string text = text_of(own);
+  if (options.compare) {
+    text += "\n\nmasks     excess    mean   worst  edge mm  lost fused spurious";
+    for (const std::string enhance : {"none", "paper", "inverse"}) {
+      const MaskSource masks = enhanced_masks(job, target, profile, enhance, console);
+      const ScoreSheet sheet =
+          score_masks(masks, header, target, models, "scoring (" + enhance + ")", console);
+      json["compare"][enhance] = to_json(sheet);
+      text += table_row(enhance, sheet);
+    }
   }
-  report(sum, console);
+  console.result(json, text);
 }
 
 }  // namespace
@@ -112,6 +118,8 @@ void add_score_verb(CLI::App& program) {
       "--map", options->map,
       "a folder to write: what is missing, extra, lost and fused in each layer as PNGs, "
       "and features.json");
+  verb->add_flag("--compare", options->compare,
+                 "also score the masks without enhancement, of the paper's rule and inverse ones");
   verb->callback([options, console = add_console_options(*verb)] { score(*options, *console); });
 }
 

@@ -166,6 +166,7 @@ SlicePlan plan_slices(const SliceOptions& options, const Console& console) {
   header.grid = header.profile.grid(options.layer_mm);
   header.enhance = options.enhance;
   header.passes = options.enhance == "paper" ? options.passes : 0;
+  header.robust = options.robust;
   std::vector<Part> parts = load_parts(options, header);
 #ifdef __GLIBC__
   malloc_trim(0);  // what reading and repair freed, or it counts beside all that follows
@@ -198,11 +199,14 @@ std::unique_ptr<Stream<EncodedLayer>> encoded_layers(const JobHeader& header,
 
 void add_slice_options(CLI::App& verb, SliceOptions& options) {
   verb.add_option("--enhance", options.enhance, "how masks answer the printer's blur")
-      ->check(CLI::IsMember({"none", "paper"}))
+      ->check(CLI::IsMember({"none", "paper", "inverse"}))
       ->capture_default_str();
   verb.add_option("--passes", options.passes, "passes of the paper's rule")
       ->check(CLI::Range(1, 16))
       ->capture_default_str();
+  verb.add_flag("--robust,!--no-robust", options.robust,
+                "inverse: masks for a printer that may be a little off (default), not for the "
+                "profile's model alone");
   verb.add_option("--layer", options.layer_mm, "layer height in mm, one the printer has");
   verb.add_option("--scale", options.placement.scale, "scale factor")
       ->check(CLI::PositiveNumber)

@@ -23,6 +23,7 @@ struct SliceOptions {
   std::string out;
   std::string enhance = "none";
   int passes = 2;
+  bool robust = true;
   std::optional<double> layer_mm;
   std::string units;
   Placement placement;

@@ -16,6 +16,7 @@ void add_print_verb(CLI::App& program);
 void add_profile_verb(CLI::App& program);
 void add_simulate_verb(CLI::App& program);
 void add_score_verb(CLI::App& program);
+void add_explain_verb(CLI::App& program);
 void add_coupon_verb(CLI::App& program);
 void add_calibrate_verb(CLI::App& program);
 

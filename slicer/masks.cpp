@@ -3,6 +3,7 @@
 
 #include <utility>
 
+#include "slicer/enhance/inverse.h"
 #include "slicer/enhance/paper_rule.h"
 #include "slicer/slicing_operator.h"
 
@@ -23,15 +24,16 @@ std::unique_ptr<Stream<PassLayer>> with_print(std::unique_ptr<Stream<SlicedLayer
                                               LayerRange layers, int job_layers,
                                               std::shared_ptr<const PrinterModel> model) {
   using Print = Step<SlicedLayer, PassLayer>;
-  return std::make_unique<Print>(std::move(sliced), layers, model->window_reach(), job_layers,
-                                 [model](int layer, Print::Window window) {
-                                   std::vector<const RunLayer*> masks;
-                                   for (const Shared<SlicedLayer>& near : window) {
-                                     masks.push_back(near == nullptr ? nullptr : &near->mask);
-                                   }
-                                   const SlicedLayer& here = *window[window.size() / 2];
-                                   return PassLayer{here.target, here.volume, model->print(masks, layer)};
-                                 });
+  return std::make_unique<Print>(
+      std::move(sliced), layers, model->window_reach(), job_layers,
+      [model](int layer, Print::Window window) {
+        std::vector<const RunLayer*> masks;
+        for (const Shared<SlicedLayer>& near : window) {
+          masks.push_back(near == nullptr ? nullptr : &near->mask);
+        }
+        const SlicedLayer& here = *window[window.size() / 2];
+        return PassLayer{here.target, here.volume, model->print(masks, layer)};
+      });
 }
 
 // How many layers above and below a layer `passes` passes look at.
@@ -84,6 +86,37 @@ std::unique_ptr<Stream<MaskLayer>> paper_masks(TargetFrom target_from, const Gri
       });
 }
 
+std::unique_ptr<Stream<MaskLayer>> inverse_masks(TargetFrom target_from, LayerRange layers,
+                                                 int job_layers,
+                                                 std::shared_ptr<const InverseSolver> solver) {
+  const int turns = solver->stride();
+  const int improving = turns * (turns == 1 ? 1 : 2);
+  const int steps = improving + 3 * turns;
+  const auto range_with = [&](int steps_left) {
+    return grown(layers, steps_left * solver->reach(), job_layers);
+  };
+  using First = Step<VoxelLayer, InverseLayer>;
+  std::unique_ptr<Stream<InverseLayer>> improved = std::make_unique<First>(
+      target_from(range_with(steps)), range_with(steps), 0, job_layers,
+      [solver](int layer, First::Window window) { return solver->plain(layer, window[0]); });
+
+  using Improve = Step<InverseLayer, InverseLayer>;
+  for (int step = 0; step < steps; ++step) {
+    improved = std::make_unique<Improve>(
+        std::move(improved), range_with(steps - step - 1), solver->reach(), job_layers,
+        [solver, step, turns, improving](int layer, Improve::Window window) {
+          if (layer % turns != step % turns) return *window[window.size() / 2];
+          return step < improving ? solver->improve(window, step < turns) : solver->rescue(window);
+        });
+  }
+
+  using Last = Step<InverseLayer, MaskLayer>;
+  return std::make_unique<Last>(std::move(improved), layers, 0, job_layers,
+                                [](int, Last::Window window) {
+                                  return MaskLayer{*window[0]->mask, window[0]->target};
+                                });
+}
+
 std::unique_ptr<Stream<MaskLayer>> plain_masks(std::shared_ptr<const Mesh> mesh, const Grid& grid,
                                                const JobBox& box, LayerRange layers) {
   return plain_masks(voxelize(std::move(mesh), grid, box, layers), grid, layers, box.size_px[2]);
@@ -95,6 +128,14 @@ std::unique_ptr<Stream<MaskLayer>> paper_masks(std::shared_ptr<const Mesh> mesh,
                                                int passes) {
   return paper_masks([&](LayerRange range) { return voxelize(std::move(mesh), grid, box, range); },
                      grid, layers, box.size_px[2], std::move(model), passes);
+}
+
+std::unique_ptr<Stream<MaskLayer>> inverse_masks(std::shared_ptr<const Mesh> mesh, const Grid& grid,
+                                                 const JobBox& box, LayerRange layers,
+                                                 std::shared_ptr<const InverseSolver> solver) {
+  return inverse_masks(
+      [&](LayerRange range) { return voxelize(std::move(mesh), grid, box, range); }, layers,
+      box.size_px[2], std::move(solver));
 }
 
 }  // namespace binderjet

@@ -14,6 +14,8 @@
 
 namespace binderjet {
 
+class InverseSolver;  // slicer/enhance/inverse.h
+
 struct MaskLayer {
   RunLayer mask;              // at the printer grid
   Shared<VoxelLayer> target;  // what it is meant to become
@@ -38,6 +40,13 @@ std::unique_ptr<Stream<MaskLayer>> paper_masks(TargetFrom target_from, const Gri
                                                std::shared_ptr<const PrinterModel> model,
                                                int passes);
 
+// The masks that print nearest to the target (slicer/enhance/inverse.h). A model whose binder
+// crosses layers takes turns: layers that share no print are improved together, twice over. Then
+// those in which features vanish are searched again with the neighbours' prints known, twice too.
+std::unique_ptr<Stream<MaskLayer>> inverse_masks(TargetFrom target_from, LayerRange layers,
+                                                 int job_layers,
+                                                 std::shared_ptr<const InverseSolver> solver);
+
 // The same from a mesh whose lower corner is at (0, 0, 0).
 std::unique_ptr<Stream<MaskLayer>> plain_masks(std::shared_ptr<const Mesh> mesh, const Grid& grid,
                                                const JobBox& box, LayerRange layers);
@@ -45,5 +54,8 @@ std::unique_ptr<Stream<MaskLayer>> paper_masks(std::shared_ptr<const Mesh> mesh,
                                                const JobBox& box, LayerRange layers,
                                                std::shared_ptr<const PrinterModel> model,
                                                int passes);
+std::unique_ptr<Stream<MaskLayer>> inverse_masks(std::shared_ptr<const Mesh> mesh, const Grid& grid,
+                                                 const JobBox& box, LayerRange layers,
+                                                 std::shared_ptr<const InverseSolver> solver);
 
 }  // namespace binderjet

@@ -42,12 +42,19 @@ struct NumberRule {
   std::size_t count;  // how many numbers the parameter has
   double min;         // allowed: min < value <= max
   double max;
+  // How far a real printer may be off the profile, by a share of the value and by a step: the
+  // process window (slicer/effects/process_window.h).
+  double drift_share = 0;
+  double drift_step = 0;
   bool optional = false;
 };
 struct WordRule {
   std::string name;
   std::vector<std::string> allowed;
 };
+
+// How far the level of a real printer may be off, as dose.
+constexpr double kLevelDrift = 0.05;
 
 struct ModelForm;  // slicer/effects/model.h
 

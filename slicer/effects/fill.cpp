@@ -6,10 +6,12 @@
 namespace binderjet {
 
 EffectKind fill_kind() {
-  return {
-      "fill", {}, {{"level", 1, 0, 1}}, [](const EffectSpec& spec, const Grid&, ModelForm& form) {
-        form.bind_at(spec.number("level"));
-      }};
+  return {"fill",
+          {},
+          {{"level", 1, 0, 1, 0, kLevelDrift}},
+          [](const EffectSpec& spec, const Grid&, ModelForm& form) {
+            form.bind_at(spec.number("level"));
+          }};
 }
 
 }  // namespace binderjet

@@ -17,9 +17,10 @@ Kernel kernel(const EffectSpec& spec, const Grid& grid, int axis) {
 
 EffectKind spread_kind() {
   constexpr double kMaxWidthMm = 10;
+  constexpr double kDriftShare = 0.1;
   return {"spread",
           {{"shape", {"box", "gaussian"}}},
-          {{"width_mm", 2, 0, kMaxWidthMm}},
+          {{"width_mm", 2, 0, kMaxWidthMm, kDriftShare, 0}},
           [](const EffectSpec& spec, const Grid& grid, ModelForm& form) {
             for (DoseTerm& term : form.terms) {
               term.x = kernel(spec, grid, 0);

@@ -8,7 +8,7 @@ namespace binderjet {
 EffectKind threshold_kind() {
   return {"threshold",
           {},
-          {{"level", 1, 0, 1}},
+          {{"level", 1, 0, 1, 0, kLevelDrift}},
           [](const EffectSpec& spec, const Grid&, ModelForm& form) {
             form.bind_at(spec.number("level"));
           }};

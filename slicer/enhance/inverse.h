@@ -1,0 +1,66 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Inverse: the mask whose print is nearest to the target, found by search on the printer model.
+//
+// Lithography's problem (blur, threshold, find the mask) on powder. A layer's mask is improved
+// while the masks around it stay: it begins where a straight edge would have to be, then single
+// pixels flip as long as fewer voxels come out wrong. What counts is the mean over the process
+// window, the nominal model most, so that a mask is also right on a printer that is a little off. A
+// mask that prints any layer worse than the plain masks do is dropped.
+#pragma once
+
+#include <algorithm>
+#include <memory>
+#include <vector>
+
+#include "slicer/effects/model.h"
+#include "slicer/enhance/inverse_layer.h"
+#include "slicer/enhance/layer_search.h"
+#include "slicer/enhance/mask_rules.h"
+#include "slicer/grid.h"
+
+namespace binderjet {
+
+// Why a pixel is on or off.
+struct PixelReasons {
+  bool on = false;
+  double target_share = 0;           // of its voxels
+  double level = 0;                  // at which powder binds
+  std::vector<double> dose;          // of its voxels, row by row
+  std::vector<double> dose_flipped;  // the same if the pixel were in the other state
+  int nominal_cost = 0;              // how many more voxels were wrong then
+  int window_cost = 0;               // and by weight over the process window
+  bool rules_allow = true;           // it to be in the other state
+};
+
+class InverseSolver {
+ public:
+  // The first model is the printer, the others are what it may drift to (process_window()); alone,
+  // only the first counts.
+  InverseSolver(std::vector<PrinterModel> window, const Grid& grid, const MaskRules& rules);
+
+  // How many layers on each side of a layer improve() and rescue() look at.
+  int reach() const { return std::max(2, 2 * model_.window_reach()); }
+  // Layers so many apart (or a multiple) print into no common layer, so all of them may be improved
+  // at once and none spoils what another one saw.
+  int stride() const { return stride_; }
+
+  // Layer `number` of the job with its plain mask, or what the rules leave of it.
+  InverseLayer plain(int number, Shared<VoxelLayer> target) const;
+  // The middle layer with a better mask; `anew` forgets its mask so far. No layer prints worse than
+  // with plain masks, unless it did before (nominal model, wrong voxels).
+  InverseLayer improve(LayerWindow layers, bool anew) const;
+  // The same with fewer voxels of lost and fused features (slicer/features.h), if there are any.
+  InverseLayer rescue(LayerWindow layers) const;
+  // Of pixel (x, y) of the middle layer, its mask so far.
+  PixelReasons reasons(LayerWindow layers, int x, int y) const;
+
+ private:
+  bool acceptable(LayerWindow layers, const RunLayer& mask) const;
+  LayerFeatures vanished(LayerWindow layers, const RunLayer& mask) const;
+
+  PrinterModel model_;
+  SearchModel search_;
+  int stride_ = 1;
+};
+
+}  // namespace binderjet

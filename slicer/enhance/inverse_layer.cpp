@@ -1,0 +1,49 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "slicer/enhance/inverse_layer.h"
+
+#include <vector>
+
+namespace binderjet {
+namespace {
+
+template <class MaskOf>
+RunLayer print(LayerWindow layers, int offset, const PrinterModel& model, MaskOf mask_of) {
+  std::vector<const RunLayer*> masks;
+  for (int near = offset - model.window_reach(); near <= offset + model.window_reach(); ++near) {
+    const InverseLayer* layer = layer_at(layers, near);
+    masks.push_back(layer == nullptr ? nullptr : mask_of(*layer, near));
+  }
+  return model.print(masks, layer_at(layers, 0)->number + offset);
+}
+
+}  // namespace
+
+const InverseLayer* layer_at(LayerWindow layers, int offset) {
+  const int at = static_cast<int>(layers.size()) / 2 + offset;
+  return at < 0 || at >= static_cast<int>(layers.size())
+             ? nullptr
+             : layers[static_cast<std::size_t>(at)].get();
+}
+
+ModelOffsets offsets_of(const ModelForm& form) {
+  ModelOffsets offsets;
+  for (const DoseTerm& term : form.terms) offsets.printed.insert(-term.layer);
+  for (const int printed : offsets.printed) {
+    for (const DoseTerm& term : form.terms) offsets.masks.insert(printed + term.layer);
+  }
+  return offsets;
+}
+
+RunLayer print_plain(LayerWindow layers, int offset, const PrinterModel& model) {
+  return print(layers, offset, model,
+               [](const InverseLayer& layer, int) { return layer.plain.get(); });
+}
+
+RunLayer print_with(LayerWindow layers, int offset, const PrinterModel& model,
+                    const RunLayer& own) {
+  return print(layers, offset, model, [&own](const InverseLayer& layer, int at) {
+    return at == 0 ? &own : layer.mask.get();
+  });
+}
+
+}  // namespace binderjet

@@ -1,0 +1,46 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// A layer on its way through the inverse solver, and what a window of layers prints.
+#pragma once
+
+#include <set>
+#include <span>
+#include <vector>
+
+#include "slicer/effects/model.h"
+#include "slicer/features.h"
+#include "slicer/run_layer.h"
+#include "slicer/stream.h"
+#include "slicer/voxelize.h"
+
+namespace binderjet {
+
+// Shared, for most steps change one of its parts only.
+struct InverseLayer {
+  Shared<VoxelLayer> target;
+  Shared<RunLayer> plain;  // its mask without enhancement
+  Shared<RunLayer> mask;   // its mask so far; obeys the rules
+  // Features that have vanished from its print before and shall not again.
+  std::vector<Shared<LayerFeatures>> stressed;
+  int number = 0;  // in the job, from 0 on the bed
+};
+
+// An odd number of layers, null beyond the job's ends; offsets are from the middle one.
+using LayerWindow = std::span<const Shared<InverseLayer>>;
+
+// Null also beyond the window's ends.
+const InverseLayer* layer_at(LayerWindow layers, int offset);
+
+// The layers whose print the mask of the middle one changes, and those whose masks have a part in
+// that print, as offsets.
+struct ModelOffsets {
+  std::set<int> printed;
+  std::set<int> masks;
+};
+ModelOffsets offsets_of(const ModelForm& form);
+
+// What becomes of the layer at `offset`, which must be there: with the plain masks, and with those
+// so far but `own` for the middle layer.
+RunLayer print_plain(LayerWindow layers, int offset, const PrinterModel& model);
+RunLayer print_with(LayerWindow layers, int offset, const PrinterModel& model, const RunLayer& own);
+
+}  // namespace binderjet

@@ -1,0 +1,130 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "slicer/enhance/layer_search.h"
+
+#include <algorithm>
+#include <limits>
+#include <map>
+#include <utility>
+
+#include "slicer/enhance/active_tiles.h"
+#include "slicer/enhance/change_count.h"
+#include "slicer/enhance/tile_surroundings.h"
+#include "slicer/rows.h"
+
+namespace binderjet {
+namespace {
+
+// Tiles overlap by this much, so that no pixel is settled before its neighbours have been seen.
+constexpr int kOverlapPx = 4;
+// Sweeps over a tile; trials end after 3 to 8.
+constexpr int kMostSweeps = 20;
+
+// What a pixel can do, the short way where all that it reaches is alike.
+PixelSight look(const LocalDose& dose, const Surroundings& around,
+                const std::map<int, ChangeCount>& changes, int x, int y) {
+  const Rect reach = dose.voxels_of(x, y);
+  PixelSight sight{std::numeric_limits<int>::max(), std::numeric_limits<int>::min(), 0};
+  for (const auto& [offset, change] : changes) {
+    if (!change.uniform(reach)) return dose.sight(x, y);
+    const int cost = *around.cost(offset, true).at(reach.x0, reach.y0);
+    sight.least_cost = std::min(sight.least_cost, cost);
+    sight.most_cost = std::max(sight.most_cost, cost);
+  }
+  return sight.least_cost < 0 && sight.most_cost > 0 ? dose.sight(x, y) : sight;
+}
+
+bool meet(const std::vector<RunLayer>& slices, const Rect& rect) {
+  for (const RunLayer& slice : slices) {
+    for (int y = rect.y0; y < rect.y1; ++y) {
+      const rows::Row row = slice.row(y);
+      for (std::size_t i = 0; i < row.size(); i += 2) {
+        if (row[i] < rect.x1 && row[i + 1] > rect.x0) return true;
+      }
+    }
+  }
+  return false;
+}
+
+}  // namespace
+
+LayerSearch::LayerSearch(const SearchModel& by, LayerWindow layers) : by_(by), layers_(layers) {
+  const RunLayer& before = *layer_at(layers, 0)->mask;
+  box_ = {0, 0, before.width(), before.height()};
+  const TileSurroundings nothing(layers_, by_.offsets, mask_);
+  const LocalDose one(by_.models, by_.grid, {0, 0, 1, 1}, nothing);
+  reach_vx_ = one.voxel_rect();
+  // Tiles at the box's edge ask for the mask beyond it.
+  const Rect& masks = one.mask_rect();
+  const int rules = by_.rules.most();
+  mask_.reset(
+      box_.grown(std::max({-masks.x0, masks.x1, rules}), std::max({-masks.y0, masks.y1, rules})),
+      0);
+  add_layer(before, std::uint8_t{1}, mask_);
+  find_tiles();
+}
+
+void LayerSearch::find_tiles() {
+  std::vector<const RunLayer*> slices;
+  for (const int offset : by_.offsets.printed) {
+    const InverseLayer* layer = layer_at(layers_, offset);
+    if (layer == nullptr) continue;
+    for (const RunLayer& slice : layer->target->slices) slices.push_back(&slice);
+  }
+  const std::array<int, 2> reach{std::max(-reach_vx_.x0, reach_vx_.x1),
+                                 std::max(-reach_vx_.y0, reach_vx_.y1)};
+  for (const Rect& rect : active_tiles(slices, by_.grid, reach)) {
+    tiles_.push_back({rect.grown(kOverlapPx, kOverlapPx).cut(box_), {}});
+  }
+}
+
+void LayerSearch::run(bool anew) { search(tiles_, anew); }
+
+void LayerSearch::run_near(const LayerFeatures& features) {
+  std::vector<Tile> near;
+  for (const Tile& tile : tiles_) {
+    const std::array<int, 2> r{by_.grid.detail_vx[0], by_.grid.detail_vx[1]};
+    const Rect voxels{tile.rect.x0 * r[0] + reach_vx_.x0, tile.rect.y0 * r[1] + reach_vx_.y0,
+                      tile.rect.x1 * r[0] + reach_vx_.x1, tile.rect.y1 * r[1] + reach_vx_.y1};
+    if (meet(features.lost, voxels) || meet(features.fused, voxels))
+      near.push_back({tile.rect, {}});
+  }
+  search(near, true);
+}
+
+void LayerSearch::search(std::span<Tile> tiles, bool anew) {
+  for (Tile& tile : tiles) look_over(tile, anew);
+  if (anew) {
+    for (const Tile& tile : tiles) obey(by_.rules, tile.rect, mask_);
+  }
+  for (const Tile& tile : tiles) search(tile);
+}
+
+// Finds the pixels to search on. Where all that a pixel can do is good, or all is bad, it is
+// settled; else, to begin with, it is on if a straight edge through what it reaches wants it on.
+void LayerSearch::look_over(Tile& tile, bool anew) {
+  TileSurroundings around(layers_, by_.offsets, mask_);
+  const LocalDose dose(by_.models, by_.grid, tile.rect, around);
+  around.look_at(dose);
+  std::map<int, ChangeCount> changes;
+  for (const int offset : by_.offsets.printed) changes.emplace(offset, around.cost(offset, true));
+  tile.pixels.clear();
+  for (int y = tile.rect.y0; y < tile.rect.y1; ++y) {
+    for (int x = tile.rect.x0; x < tile.rect.x1; ++x) {
+      const PixelSight sight = look(dose, around, changes, x, y);
+      const bool open = sight.least_cost < 0 && sight.most_cost > 0;
+      if (open) tile.pixels.push_back({x, y});
+      if (anew) *mask_.at(x, y) = open ? sight.wanted >= by_.wanted : sight.least_cost < 0;
+    }
+  }
+}
+
+void LayerSearch::search(const Tile& tile) {
+  if (tile.pixels.empty()) return;
+  TileSurroundings around(layers_, by_.offsets, mask_);
+  LocalDose dose(by_.models, by_.grid, tile.rect, around);
+  around.look_at(dose);
+  dose.reset();
+  PixelSearch(dose, mask_, tile.pixels, by_.rules).run(kMostSweeps);
+}
+
+}  // namespace binderjet

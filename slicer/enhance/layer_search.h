@@ -1,0 +1,60 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The search for one layer's mask, tile by tile, while the masks of the layers around it stay.
+#pragma once
+
+#include <array>
+#include <span>
+#include <vector>
+
+#include "slicer/enhance/inverse_layer.h"
+#include "slicer/enhance/local_dose.h"
+#include "slicer/enhance/mask_rules.h"
+#include "slicer/enhance/pixel_search.h"
+#include "slicer/enhance/plane.h"
+#include "slicer/enhance/stamp.h"
+#include "slicer/features.h"
+#include "slicer/grid.h"
+
+namespace binderjet {
+
+// What a search goes by; the first model is the nominal one.
+struct SearchModel {
+  std::vector<StampedModel> models;
+  ModelOffsets offsets;
+  double wanted = 0.5;  // a straight edge needs the pixels that have more than this share within
+  MaskRules rules;
+  Grid grid;
+};
+
+class LayerSearch {
+ public:
+  // On the middle one of the layers; both must outlive this. It begins with the mask so far.
+  LayerSearch(const SearchModel& by, LayerWindow layers);
+
+  // Searches the whole layer; `anew` forgets its mask so far.
+  void run(bool anew);
+  // Searches anew where pixels reach these features (of the layer, slice by slice).
+  void run_near(const LayerFeatures& features);
+
+  RunLayer mask() const { return to_layer(mask_, box_.x1, box_.y1); }
+
+ private:
+  struct Tile {
+    Rect rect;
+    std::vector<Pixel> pixels;  // those for which neither state is right whatever is around
+  };
+
+  void find_tiles();
+  void search(std::span<Tile> tiles, bool anew);
+  void look_over(Tile& tile, bool anew);
+  void search(const Tile& tile);
+
+  const SearchModel& by_;
+  LayerWindow layers_;
+  Rect box_;
+  Rect reach_vx_;  // of the pixel at (0, 0)
+  Plane<std::uint8_t> mask_;
+  std::vector<Tile> tiles_;
+};
+
+}  // namespace binderjet

@@ -1,0 +1,43 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Costs and masks of the layers around one tile, cut out of the layers' runs.
+#pragma once
+
+#include <map>
+#include <optional>
+
+#include "slicer/enhance/inverse_layer.h"
+#include "slicer/enhance/local_dose.h"
+#include "slicer/enhance/plane.h"
+
+namespace binderjet {
+
+// A voxel of a stressed feature counts this much, in its slice and under the nominal model: more
+// than all that a pixel reaches, so that no other gain makes up for its loss.
+constexpr int kStress = 1000;
+
+class TileSurroundings : public Surroundings {
+ public:
+  // `own` is the mask of the middle layer as it is being improved; all must outlive this.
+  TileSurroundings(LayerWindow layers, const ModelOffsets& offsets, const Plane<std::uint8_t>& own)
+      : layers_(layers), offsets_(offsets), own_(own) {}
+
+  // Cuts out what this dose asks for.
+  void look_at(const LocalDose& dose);
+
+  const Plane<int>& cost(int layer, bool nominal) const override {
+    return nominal && layer == 0 && stressed_ ? *stressed_ : costs_.at(layer);
+  }
+  const Plane<std::uint8_t>& mask(int layer) const override {
+    return layer == 0 ? own_ : masks_.at(layer);
+  }
+
+ private:
+  LayerWindow layers_;
+  const ModelOffsets& offsets_;
+  const Plane<std::uint8_t>& own_;
+  std::map<int, Plane<int>> costs_;
+  std::optional<Plane<int>> stressed_;  // the middle layer's, with its stressed features
+  std::map<int, Plane<std::uint8_t>> masks_;
+};
+
+}  // namespace binderjet

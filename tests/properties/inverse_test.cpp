@@ -1,0 +1,184 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Inverse masks: never worse than plain ones, within the rules, and the same however they are made.
+#include "slicer/enhance/inverse.h"
+
+#include <gtest/gtest.h>
+#include <oneapi/tbb/global_control.h>
+
+#include <numeric>
+
+#include "slicer/effects/process_window.h"
+#include "slicer/masks.h"
+#include "slicer/score.h"
+#include "tests/support/mask_regions.h"
+#include "tests/support/random.h"
+
+namespace binderjet {
+namespace {
+
+using whole::Random;
+using whole::Volume;
+
+struct Case {
+  Grid grid;
+  Volume target{0, 0, 0};
+  MaskRules rules;
+  std::vector<PrinterModel> window;
+  int layers = 0;
+
+  const PrinterModel& model() const { return window.front(); }
+};
+
+Case random_case(Random& random, bool with_rules) {
+  Case c;
+  c.grid = random.grid();
+  c.layers = random.number(1, 5);
+  c.target =
+      random.volume(random.number(4, 14) * c.grid.detail_vx[0],
+                    random.number(4, 14) * c.grid.detail_vx[1], c.layers * c.grid.detail_vx[2], 4);
+  c.window = {random.model(c.grid, Random::Kernels::kAny)};
+  if (with_rules) c.rules = {random.number(1, 5), random.number(1, 5)};
+  return c;
+}
+
+Volume streamed(const Case& c, LayerRange layers, int block) {
+  const auto target = [&](LayerRange range) {
+    return whole::voxel_stream(c.target, c.grid.detail_vx[2], range);
+  };
+  const auto solver = std::make_shared<const InverseSolver>(c.window, c.grid, c.rules);
+  const auto stream = inverse_masks(target, layers, c.layers, solver);
+  std::vector<Shared<RunLayer>> masks;
+  while (stream->rest().size() > 0) {
+    for (const Shared<MaskLayer>& layer : stream->next(block)) {
+      masks.emplace_back(layer, &layer->mask);
+    }
+  }
+  return whole::stacked(masks);
+}
+
+// How many voxels of each layer come out wrong.
+std::vector<std::int64_t> wrong(const Case& c, const Volume& masks) {
+  const Volume printed = whole::print(masks, c.model().form(), c.grid);
+  const auto target =
+      whole::voxel_stream(c.target, c.grid.detail_vx[2], {0, c.layers})->next(c.layers);
+  std::vector<std::int64_t> out;
+  for (int k = 0; k < c.layers; ++k) {
+    const VoxelCounts counts =
+        count_voxels(*target[static_cast<std::size_t>(k)], whole::slice(printed, k));
+    out.push_back(counts.missing + counts.extra);
+  }
+  return out;
+}
+
+std::int64_t sum(const std::vector<std::int64_t>& values) {
+  return std::accumulate(values.begin(), values.end(), std::int64_t{0});
+}
+
+TEST(Inverse, NeverPrintsALayerWorseThanPlainMasks) {
+  Random random;
+  for (int round = 0; round < 60; ++round) {
+    SCOPED_TRACE(round);
+    const Case c = random_case(random, false);
+    const auto plain = wrong(c, whole::masks(c.target, c.grid));
+    const auto inverse = wrong(c, streamed(c, {0, c.layers}, kBlockLayers));
+    for (std::size_t k = 0; k < plain.size(); ++k) ASSERT_LE(inverse[k], plain[k]) << "layer " << k;
+  }
+}
+
+TEST(Inverse, KeepsToTheMaskRules) {
+  Random random;
+  for (int round = 0; round < 60; ++round) {
+    SCOPED_TRACE(round);
+    const Case c = random_case(random, true);
+    const Volume masks = streamed(c, {0, c.layers}, kBlockLayers);
+    for (int k = 0; k < c.layers; ++k) {
+      const MaskRegions found = mask_regions(whole::slice(masks, k));
+      ASSERT_GE(found.least_island_px, c.rules.min_island_px) << "layer " << k;
+      ASSERT_GE(found.least_hole_px, c.rules.min_hole_px) << "layer " << k;
+    }
+  }
+}
+
+TEST(Inverse, GivesTheSameInPiecesBlocksAndWithOneThread) {
+  Random random;
+  for (int round = 0; round < 30; ++round) {
+    SCOPED_TRACE(round);
+    const Case c = random_case(random, true);
+    const Volume all = streamed(c, {0, c.layers}, kBlockLayers);
+    const int first = random.number(0, c.layers - 1);
+    const Volume piece = streamed(c, {first, c.layers}, 2);
+    for (int k = first; k < c.layers; ++k) {
+      ASSERT_EQ(whole::slice(piece, k - first), whole::slice(all, k));
+    }
+    const oneapi::tbb::global_control one(oneapi::tbb::global_control::max_allowed_parallelism, 1);
+    ASSERT_EQ(streamed(c, {0, c.layers}, random.number(1, 4)), all);
+  }
+}
+
+// A slab with a slot, a pin and a step: what the binder closes, loses and rounds.
+Case relief(double level) {
+  Case c;
+  c.grid = {{0.1, 0.1, 0.1}, {2, 2, 2}};
+  c.layers = 6;
+  c.target = Volume(120, 120, 12);
+  c.target.fill([](int x, int y, int z) {
+    if (x < 20 || y < 20 || x >= 100 || y >= 100) return false;
+    if (z < 6) return !(x >= 40 && x < 44 && y >= 30 && y < 90);
+    return x < 60 || (x >= 80 && x < 83 && y >= 40 && y < 80);
+  });
+  c.window = process_window({{"spread", {{"shape", "box"}}, {{"width_mm", {0.7, 0.5}}}},
+                             {"threshold", {}, {{"level", {level}}}}},
+                            c.grid);
+  return c;
+}
+
+TEST(Inverse, PrintsATenthOfThePlainErrorAtALowLevel) {
+  const Case c = relief(0.25);
+  const auto plain = sum(wrong(c, whole::masks(c.target, c.grid)));
+  const auto paper = sum(wrong(c, whole::paper_masks(c.target, c.model().form(), c.grid, 2)));
+  const auto inverse = sum(wrong(c, streamed(c, {0, c.layers}, kBlockLayers)));
+  std::cout << "wrong voxels: plain " << plain << ", paper " << paper << ", inverse " << inverse
+            << '\n';
+  EXPECT_LE(10 * inverse, plain);
+  EXPECT_LE(4 * inverse, paper);
+}
+
+TEST(Inverse, AnswersBinderThatSoaksIntoTheLayersBelow) {
+  // A calibrated profile's form: a share of each layer's binder reaches the two layers below.
+  Case c = relief(0.35);
+  for (PrinterModel& model : c.window) {
+    ModelForm form = model.form();
+    const DoseTerm own = form.terms.front();
+    double share = 1;
+    for (int layer = 1; layer <= 2; ++layer) {
+      share *= 0.3;
+      form.terms.push_back({layer, own.x, own.y, share});
+    }
+    model = PrinterModel(form, c.grid);
+  }
+  const auto plain = sum(wrong(c, whole::masks(c.target, c.grid)));
+  const auto paper = sum(wrong(c, whole::paper_masks(c.target, c.model().form(), c.grid, 2)));
+  const auto inverse = sum(wrong(c, streamed(c, {0, c.layers}, kBlockLayers)));
+  std::cout << "wrong voxels: plain " << plain << ", paper " << paper << ", inverse " << inverse
+            << '\n';
+  EXPECT_LE(4 * inverse, plain);
+  EXPECT_LE(2 * inverse, paper);
+}
+
+TEST(Inverse, IsBetterThanThePaperOverTheProcessWindow) {
+  Case c = relief(0.25);
+  const Volume inverse = streamed(c, {0, c.layers}, kBlockLayers);
+  const Volume paper = whole::paper_masks(c.target, c.model().form(), c.grid, 2);
+  std::int64_t worst_inverse = 0;
+  std::int64_t worst_paper = 0;
+  for (const PrinterModel& model : c.window) {
+    Case corner = c;
+    corner.window = {model};
+    worst_inverse = std::max(worst_inverse, sum(wrong(corner, inverse)));
+    worst_paper = std::max(worst_paper, sum(wrong(corner, paper)));
+  }
+  EXPECT_LT(worst_inverse, worst_paper);
+}
+
+}  // namespace
+}  // namespace binderjet
