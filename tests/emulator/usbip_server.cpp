@@ -30,7 +30,10 @@ constexpr std::size_t kHeadBytes = 48;
 using Bytes = std::vector<std::byte>;
 
 void put(Bytes& out, std::uint64_t value, int bytes) {
-  for (int i = bytes - 1; i >= 0; --i) out.push_back(static_cast<std::byte>(value >> (8 * i)));
+  for (int i = bytes - 1; i >= 0; --i) {
+    // Fields longer than any number are padding.
+    out.push_back(i < 8 ? static_cast<std::byte>(value >> (8 * i)) : std::byte{0});
+  }
 }
 void put_text(Bytes& out, const std::string& text, std::size_t size) {
   for (std::size_t i = 0; i < size; ++i) {
