@@ -151,9 +151,9 @@ Greys find_greys(const StackReader& scan) {
   return found;
 }
 
-Plane read_plane(const StackReader& scan, const Greys& greys, int image) {
+GreyPlane read_plane(const StackReader& scan, const Greys& greys, int image) {
   const StackInfo& info = scan.info();
-  Plane plane;
+  GreyPlane plane;
   plane.width = info.size[0];
   plane.height = info.size[1];
   plane.pitch_mm = {info.pitch_mm[0], info.pitch_mm[1]};
@@ -167,7 +167,7 @@ Plane read_plane(const StackReader& scan, const Greys& greys, int image) {
   return plane;
 }
 
-RunLayer resampled(const Plane& plane, const Pose& pose, const StackInfo& frame) {
+RunLayer resampled(const GreyPlane& plane, const Pose& pose, const StackInfo& frame) {
   const int width = frame.size[0];
   RunLayer layer(width);
   for (int y = 0; y < frame.size[1]; ++y) {
@@ -217,7 +217,7 @@ Measured read_measured(const std::string& folder, const StackInfo& frame,
                          reader.info().pitch_mm[0];
   for_layers([&](int k) {
     const double low = frame.origin_mm[2] + k * frame.pitch_mm[2] + pose.shift_mm[2];
-    const Plane plane = scan.mean(low, low + frame.pitch_mm[2]);
+    const GreyPlane plane = scan.mean(low, low + frame.pitch_mm[2]);
     const bool noisy = measured.greys.noise > kMostNoise;
     return resampled(noisy ? blurred(plane, blur_mm) : plane, pose, frame);
   });

@@ -11,7 +11,7 @@
 
 namespace binderjet {
 
-struct Plane {
+struct GreyPlane {
   int width = 0;
   int height = 0;
   std::array<double, 2> pitch_mm{};
@@ -35,17 +35,17 @@ struct Plane {
 };
 
 // The share of solid in cells of factor[0] x factor[1] voxels.
-Plane coverage(const RunLayer& layer, std::array<double, 2> pitch_mm,
-               std::array<double, 2> origin_mm, std::array<int, 2> factor);
+GreyPlane coverage(const RunLayer& layer, std::array<double, 2> pitch_mm,
+                   std::array<double, 2> origin_mm, std::array<int, 2> factor);
 
 // Averages of cells of factor[0] x factor[1] samples.
-Plane coarsened(const Plane& plane, std::array<int, 2> factor);
+GreyPlane coarsened(const GreyPlane& plane, std::array<int, 2> factor);
 
 // Convolved with a normal distribution of this standard deviation; powder all around. The result
 // reaches three deviations further on each side.
-Plane blurred(const Plane& plane, double sigma_mm);
+GreyPlane blurred(const GreyPlane& plane, double sigma_mm);
 
 // sum += weight * plane; both of one grid.
-void add_scaled(Plane& sum, const Plane& plane, double weight);
+void add_scaled(GreyPlane& sum, const GreyPlane& plane, double weight);
 
 }  // namespace binderjet

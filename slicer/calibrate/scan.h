@@ -23,12 +23,12 @@ struct Pose {
 // different slices at once.
 struct Scan {
   StackInfo info;
-  std::function<Plane(int)> slice;
+  std::function<GreyPlane(int)> slice;
 
   // Whether the scan's slices are the frame's layers, one for one.
   bool has_layers_of(const StackInfo& frame) const;
   // The mean over the heights [low, high) mm; powder outside the scan.
-  Plane mean(double low_mm, double high_mm) const;
+  GreyPlane mean(double low_mm, double high_mm) const;
 };
 
 }  // namespace binderjet

@@ -103,7 +103,7 @@ void write_scan(const std::string& folder, const Part& part, const StackInfo& fr
   std::normal_distribution<double> noise(0, scan.noise);
   const double turn = scan.pose.turn_deg * std::numbers::pi / 180;
   for (int k = 0; k < info.size[2]; ++k) {
-    Plane plane;
+    GreyPlane plane;
     plane.width = info.size[0];
     plane.height = info.size[1];
     plane.pitch_mm = {scan.pitch_mm, scan.pitch_mm};
