@@ -249,7 +249,10 @@ class Calibrator {
 
 std::string verdict_of(const std::vector<FoundEffect>& effects) {
   if (effects.empty()) return "none";
-  return effects.front().kind == "empirical" ? "unexplained" : "effect";
+  const bool nameless = std::all_of(effects.begin(), effects.end(), [](const FoundEffect& effect) {
+    return effect.kind == "empirical";
+  });
+  return nameless ? "unexplained" : "effect";
 }
 
 }  // namespace
