@@ -61,6 +61,12 @@ std::string rule(double x0, double y0, double x1, double y1, const char* color) 
       y1, color);
 }
 
+// A label's end, which is where names of files differ.
+std::string shortened(const std::string& label) {
+  constexpr std::size_t kMost = 26;
+  return label.size() <= kMost ? label : "\u2026" + label.substr(label.size() - kMost);
+}
+
 std::string number(double value) {
   return fmt::format("{:g}", std::abs(value) < 1e-12 ? 0 : value);
 }
@@ -88,7 +94,7 @@ std::string bars(const std::vector<BarGroup>& groups) {
   double y = kGap;
   for (const BarGroup& group : groups) {
     const double middle = y + kBar * static_cast<double>(group.bars.size()) / 2 + 4;
-    out += text_at(kLabel - 10, middle, "end", group.label, "");
+    out += text_at(kLabel - 10, middle, "end", shortened(group.label), "");
     for (const Bar& bar : group.bars) {
       const double length =
           most > 0 ? std::max(1.0, bar.value / most * (kWidth - kLabel - kValue)) : 1;

@@ -8,8 +8,8 @@
 #include <functional>
 #include <map>
 #include <optional>
-#include <set>
 
+#include "slicer/calibrate/length_blocks.h"
 #include "slicer/error.h"
 
 namespace binderjet {
@@ -18,130 +18,16 @@ namespace {
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-constexpr std::array<const char*, 3> kAxes = {"x", "y", "z"};
-
-// One row of the file: one reading of each axis.
-struct Block {
-  int line = 0;
-  std::string batch;
-  std::string part;
-  std::string reading;
-  std::optional<double> number;  // of the part, if it is a number
-  std::array<std::optional<double>, 2> position_mm;
-  std::array<double, 3> nominal{};
-  std::array<double, 3> error{};  // measured - nominal; 0 on an axis that is not in the file
-  double worst = 0;
-};
-
-std::vector<std::size_t> axes_in(const GaugeTable& table) {
-  std::vector<std::size_t> axes;
-  for (std::size_t a = 0; a < 3; ++a) {
-    const std::string axis = kAxes[a];
-    if (table.has("nominal_" + axis) && table.has("meas_" + axis)) axes.push_back(a);
-  }
-  return axes;
-}
-
-std::vector<Block> blocks_of(const GaugeTable& table) {
-  const auto word = [&](const GaugeTable::Row& row, const std::string& column) {
-    return table.has(column) ? table.text(row, column) : std::string();
-  };
-  std::vector<Block> blocks;
-  for (const GaugeTable::Row& row : table.rows) {
-    Block block;
-    block.line = row.line;
-    block.batch = word(row, "batch");
-    // Without a part number each row is a part of its own.
-    block.part = table.has("part") ? word(row, "part") : fmt::format("line {}", row.line);
-    if (table.has("part") && block.part.find_first_not_of("0123456789") == std::string::npos) {
-      block.number = table.number(row, "part");
-    }
-    block.reading = word(row, "rep");
-    for (std::size_t a = 0; a < 2; ++a) {
-      const std::string column = fmt::format("pos_{}_mm", kAxes[a]);
-      if (table.has(column)) block.position_mm[a] = table.number(row, column);
-    }
-    for (const std::size_t a : axes_in(table)) {
-      const std::string axis = kAxes[a];
-      block.nominal[a] = table.number(row, "nominal_" + axis);
-      if (block.nominal[a] <= 0) {
-        throw Error(ErrorKind::kBadInput, fmt::format("{}:{}", table.path, row.line),
-                    "a nominal length must be above 0");
-      }
-      block.error[a] = table.number(row, "meas_" + axis) - block.nominal[a];
-      block.worst = std::max(block.worst, std::abs(block.error[a]));
-    }
-    blocks.push_back(std::move(block));
-  }
-  return blocks;
-}
-
-std::vector<std::string> batches_of(const std::vector<Block>& blocks) {
-  std::vector<std::string> batches;
-  for (const Block& block : blocks) {
-    if (std::find(batches.begin(), batches.end(), block.batch) == batches.end()) {
-      batches.push_back(block.batch);
-    }
-  }
-  return batches;
-}
-
-// Takes out broken batches, then rows that are too far off.
-void drop_broken(std::vector<Block>& blocks, const LengthRules& rules, LengthFindings& found) {
-  const auto broken = [&](const Block& block) { return block.worst > rules.drop_mm; };
-  for (const std::string& batch : batches_of(blocks)) {
-    const auto in_batch = [&](const Block& block) { return block.batch == batch; };
-    const auto rows = std::count_if(blocks.begin(), blocks.end(), in_batch);
-    const auto off = std::count_if(blocks.begin(), blocks.end(),
-                                   [&](const Block& b) { return in_batch(b) && broken(b); });
-    if (2 * off <= rows) continue;
-    std::erase_if(blocks, in_batch);
-    found.dropped.push_back(
-        fmt::format("batch {}: broken, {} of its {} rows are off by more than {} mm", batch, off,
-                    rows, rules.drop_mm));
-  }
-  std::vector<int> lines;
-  for (const Block& block : blocks) {
-    if (broken(block)) lines.push_back(block.line);
-  }
-  std::erase_if(blocks, broken);
-  if (lines.empty()) return;
-  found.dropped.push_back(fmt::format("{} single row{} off by more than {} mm: line{} {}",
-                                      lines.size(), lines.size() == 1 ? "" : "s", rules.drop_mm,
-                                      lines.size() == 1 ? "" : "s", fmt::join(lines, ", ")));
-}
-
-// Where parts lay is only told by their number, which means the same place only in batches that
-// were laid out alike. Those of the most common layout stay.
-void keep_one_layout(std::vector<Block>& blocks, LengthFindings& found) {
-  std::map<std::string, std::set<std::string>> parts;
-  for (const Block& block : blocks) parts[block.batch].insert(block.part);
-  std::map<std::set<std::string>, int> layouts;
-  for (const auto& [batch, layout] : parts) ++layouts[layout];
-  if (layouts.size() < 2) return;
-  const auto common =
-      std::max_element(layouts.begin(), layouts.end(),
-                       [](const auto& a, const auto& b) { return a.second < b.second; });
-  if (common->second < 2) return;
-  for (const std::string& batch : batches_of(blocks)) {
-    if (parts[batch] == common->first) continue;
-    found.dropped.push_back(fmt::format(
-        "batch {}: its part numbers are not those of the other batches, so they are other places",
-        batch));
-    std::erase_if(blocks, [&](const Block& block) { return block.batch == batch; });
-  }
-}
-
 // The readings of the blocks one by one, axis by axis.
 struct Readings {
-  std::vector<const Block*> block;
+  std::vector<const LengthBlock*> block;
   std::vector<std::size_t> axis;
   VectorXd error;
   std::vector<int> part;  // the group that is held out: a part of a batch
 
-  Readings(const std::vector<Block>& blocks, const std::vector<std::size_t>& axes) {
+  Readings(const std::vector<LengthBlock>& blocks, const std::vector<std::size_t>& axes) {
     std::map<std::pair<std::string, std::string>, int> parts;
-    for (const Block& b : blocks) {
+    for (const LengthBlock& b : blocks) {
       const int group =
           parts.try_emplace({b.batch, b.part}, static_cast<int>(parts.size())).first->second;
       for (const std::size_t a : axes) {
@@ -159,8 +45,8 @@ struct Readings {
 
   // One column per value of a label, holding `value` where the label is that; "" is in no column.
   TermForm form(const std::string& name,
-                const std::function<std::string(const Block&, std::size_t)>& label,
-                const std::function<double(const Block&, std::size_t)>& value) const {
+                const std::function<std::string(const LengthBlock&, std::size_t)>& label,
+                const std::function<double(const LengthBlock&, std::size_t)>& value) const {
     TermForm out{name, {}, {}};
     std::vector<std::optional<Eigen::Index>> places;
     for (std::size_t i = 0; i < block.size(); ++i) {
@@ -181,17 +67,17 @@ struct Readings {
   }
 };
 
-double one(const Block&, std::size_t) { return 1; }
-double nominal(const Block& block, std::size_t axis) { return block.nominal[axis]; }
-std::string batch_label(const Block& block, std::size_t) { return "batch " + block.batch; }
-std::string axis_label(const Block&, std::size_t axis) { return kAxes[axis]; }
+double one(const LengthBlock&, std::size_t) { return 1; }
+double nominal(const LengthBlock& block, std::size_t axis) { return block.nominal[axis]; }
+std::string batch_label(const LengthBlock& block, std::size_t) { return "batch " + block.batch; }
+std::string axis_label(const LengthBlock&, std::size_t axis) { return kAxisNames[axis]; }
 
 // Which reading, on one axis only; the first is what the others are compared with.
-std::function<std::string(const Block&, std::size_t)> reading_label(std::size_t wanted,
-                                                                    const std::string& first) {
-  return [=](const Block& block, std::size_t axis) {
+std::function<std::string(const LengthBlock&, std::size_t)> reading_label(
+    std::size_t wanted, const std::string& first) {
+  return [=](const LengthBlock& block, std::size_t axis) {
     if (axis != wanted || block.reading == first) return std::string();
-    return fmt::format("{}, reading {} against {}", kAxes[axis], block.reading, first);
+    return fmt::format("{}, reading {} against {}", kAxisNames[axis], block.reading, first);
   };
 }
 
@@ -213,12 +99,12 @@ Term reading_term(const Readings& readings, const std::vector<std::size_t>& axes
   Term term{per_batch ? "layer shift per batch" : "layer shift", {}};
   for (const std::size_t a : axes) {
     const auto label = reading_label(a, first);
-    const auto per = [=](const Block& block, std::size_t axis) {
+    const auto per = [=](const LengthBlock& block, std::size_t axis) {
       const std::string key = label(block, axis);
       return key.empty() || !per_batch ? key : key + ", batch " + block.batch;
     };
     term.forms.push_back(
-        centred(readings.form(fmt::format("along {}", kAxes[a]), per, one), readings));
+        centred(readings.form(fmt::format("along {}", kAxisNames[a]), per, one), readings));
   }
   return term;
 }
@@ -226,48 +112,51 @@ Term reading_term(const Readings& readings, const std::vector<std::size_t>& axes
 // Where the part lay: measured, or its number counted into columns or rows of every length.
 std::vector<TermForm> position_forms(const Readings& readings) {
   std::vector<TermForm> forms;
-  const auto add = [&](const std::string& name, const std::function<double(const Block&)>& place) {
+  const auto add = [&](const std::string& name,
+                       const std::function<double(const LengthBlock&)>& place) {
     VectorXd all(readings.error.size());
     for (std::size_t i = 0; i < readings.block.size(); ++i) {
       all[static_cast<Eigen::Index>(i)] = place(*readings.block[i]);
     }
     const double mean = all.mean();
     if ((all.array() - mean).abs().maxCoeff() < 1e-9) return;
-    forms.push_back(readings.form(
-        name, axis_label, [&](const Block& block, std::size_t) { return place(block) - mean; }));
+    forms.push_back(readings.form(name, axis_label, [&](const LengthBlock& block, std::size_t) {
+      return place(block) - mean;
+    }));
   };
   const auto all_have = [&](auto has) {
     return std::all_of(readings.block.begin(), readings.block.end(),
-                       [&](const Block* block) { return has(*block); });
+                       [&](const LengthBlock* block) { return has(*block); });
   };
   for (std::size_t a = 0; a < 2; ++a) {
-    if (!all_have([&](const Block& b) { return b.position_mm[a].has_value(); })) continue;
-    add(fmt::format("pos_{}", kAxes[a]), [a](const Block& b) { return *b.position_mm[a]; });
+    if (!all_have([&](const LengthBlock& b) { return b.position_mm[a].has_value(); })) continue;
+    add(fmt::format("pos_{}", kAxisNames[a]),
+        [a](const LengthBlock& b) { return *b.position_mm[a]; });
   }
-  if (!forms.empty() || !all_have([](const Block& b) { return b.number.has_value(); }))
+  if (!forms.empty() || !all_have([](const LengthBlock& b) { return b.number.has_value(); }))
     return forms;
   constexpr int kLongest = 5;  // parts in a column; longer ones look like the number itself
   for (int n = 2; n <= kLongest; ++n) {
     add(fmt::format("{} parts to a column", n),
-        [n](const Block& b) { return std::floor((*b.number - 1) / n); });
+        [n](const LengthBlock& b) { return std::floor((*b.number - 1) / n); });
     add(fmt::format("{} parts to a row", n),
-        [n](const Block& b) { return std::fmod(*b.number - 1, n); });
+        [n](const LengthBlock& b) { return std::fmod(*b.number - 1, n); });
   }
   return forms;
 }
 
-std::vector<BatchGrowth> growth_by_batch(const std::vector<Block>& blocks,
+std::vector<BatchGrowth> growth_by_batch(const std::vector<LengthBlock>& blocks,
                                          const std::vector<std::size_t>& axes,
                                          const std::string& first_reading) {
   std::vector<BatchGrowth> all;
   for (const std::string& batch : batches_of(blocks)) {
-    std::vector<Block> own;
+    std::vector<LengthBlock> own;
     std::copy_if(blocks.begin(), blocks.end(), std::back_inserter(own),
-                 [&](const Block& block) { return block.batch == batch; });
+                 [&](const LengthBlock& block) { return block.batch == batch; });
     const Readings readings(own, axes);
     if (readings.parts() < 3) continue;
     // Of several readings the later ones may lie where layers slipped; that is not growth.
-    const auto rms_with = [&](const std::function<double(const Block&, std::size_t)>& value) {
+    const auto rms_with = [&](const std::function<double(const LengthBlock&, std::size_t)>& value) {
       const MatrixXd growth = readings.form("", batch_label, value).columns;
       const MatrixXd slipped =
           readings.form("", reading_label(axes.front(), first_reading), one).columns;
@@ -283,7 +172,7 @@ std::vector<BatchGrowth> growth_by_batch(const std::vector<Block>& blocks,
 // Mean residual over the readings that share a label.
 LengthFindings::Profile profile(
     const std::string& name, const Readings& readings, const VectorXd& after,
-    const std::function<std::string(const Block&, std::size_t)>& label) {
+    const std::function<std::string(const LengthBlock&, std::size_t)>& label) {
   LengthFindings::Profile out{name, {}, {}, {}, {}};
   const TermForm labels = readings.form(name, label, one);
   out.labels = labels.names;
@@ -326,12 +215,12 @@ int LengthFindings::offset_batches() const {
 LengthFindings trace_lengths(const GaugeTable& table, const LengthRules& rules) {
   LengthFindings found;
   const std::vector<std::size_t> axes = axes_in(table);
-  std::vector<Block> blocks = blocks_of(table);
+  std::vector<LengthBlock> blocks = blocks_of(table);
   found.rows = static_cast<int>(blocks.size());
-  drop_broken(blocks, rules, found);
+  drop_broken(blocks, rules.drop_mm, found.dropped);
   const std::string first_reading = blocks.empty() ? "" : blocks.front().reading;
   found.growth = growth_by_batch(blocks, axes, first_reading);
-  keep_one_layout(blocks, found);
+  keep_one_layout(blocks, found.dropped);
   found.used_rows = static_cast<int>(blocks.size());
   const Readings readings(blocks, axes);
   if (readings.parts() < 3) {
@@ -345,8 +234,8 @@ LengthFindings trace_lengths(const GaugeTable& table, const LengthRules& rules) 
   terms.push_back({"growth per batch and axis",
                    {readings.form(
                        "offset",
-                       [](const Block& block, std::size_t axis) {
-                         return fmt::format("batch {}, {}", block.batch, kAxes[axis]);
+                       [](const LengthBlock& block, std::size_t axis) {
+                         return fmt::format("batch {}, {}", block.batch, kAxisNames[axis]);
                        },
                        one)},
                    true});
@@ -364,11 +253,11 @@ LengthFindings trace_lengths(const GaugeTable& table, const LengthRules& rules) 
   found.profiles.push_back(profile("axis", readings, after, axis_label));
   found.profiles.push_back(profile("batch", readings, after, batch_label));
   found.profiles.push_back(
-      profile("reading (x only)", readings, after, [](const Block& block, std::size_t axis) {
+      profile("reading (x only)", readings, after, [](const LengthBlock& block, std::size_t axis) {
         return axis == 0 && !block.reading.empty() ? "reading " + block.reading : std::string();
       }));
   found.profiles.push_back(
-      profile("part (x only)", readings, after, [](const Block& block, std::size_t axis) {
+      profile("part (x only)", readings, after, [](const LengthBlock& block, std::size_t axis) {
         return axis == 0 && block.number ? "part " + block.part : std::string();
       }));
   return found;

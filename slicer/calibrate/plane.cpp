@@ -77,24 +77,33 @@ Plane coarsened(const Plane& plane, std::array<int, 2> factor) {
 }
 
 Plane blurred(const Plane& plane, double sigma_mm) {
-  Plane rows = plane;
   const std::vector<float> x_bell = half_bell(sigma_mm / plane.pitch_mm[0]);
-  for (int y = 0; y < plane.height; ++y) {
-    for (int x = 0; x < plane.width; ++x) {
-      float sum = x_bell[0] * plane.at(x, y);
-      for (int i = 1; i < static_cast<int>(x_bell.size()); ++i) {
-        sum += x_bell[static_cast<std::size_t>(i)] * (plane.at(x - i, y) + plane.at(x + i, y));
+  const std::vector<float> y_bell = half_bell(sigma_mm / plane.pitch_mm[1]);
+  const int x_reach = static_cast<int>(x_bell.size()) - 1;
+  const int y_reach = static_cast<int>(y_bell.size()) - 1;
+  Plane rows =
+      empty_cells(plane.width + 2 * x_reach, plane.height, plane.pitch_mm,
+                  {plane.origin_mm[0] - x_reach * plane.pitch_mm[0], plane.origin_mm[1]}, {1, 1});
+  for (int y = 0; y < rows.height; ++y) {
+    for (int x = 0; x < rows.width; ++x) {
+      const int from = x - x_reach;
+      float sum = x_bell[0] * plane.at(from, y);
+      for (int i = 1; i <= x_reach; ++i) {
+        sum +=
+            x_bell[static_cast<std::size_t>(i)] * (plane.at(from - i, y) + plane.at(from + i, y));
       }
       rows.values[rows.index(x, y)] = sum;
     }
   }
-  Plane out = rows;
-  const std::vector<float> y_bell = half_bell(sigma_mm / plane.pitch_mm[1]);
-  for (int y = 0; y < plane.height; ++y) {
-    for (int x = 0; x < plane.width; ++x) {
-      float sum = y_bell[0] * rows.at(x, y);
-      for (int j = 1; j < static_cast<int>(y_bell.size()); ++j) {
-        sum += y_bell[static_cast<std::size_t>(j)] * (rows.at(x, y - j) + rows.at(x, y + j));
+  Plane out =
+      empty_cells(rows.width, rows.height + 2 * y_reach, rows.pitch_mm,
+                  {rows.origin_mm[0], rows.origin_mm[1] - y_reach * rows.pitch_mm[1]}, {1, 1});
+  for (int y = 0; y < out.height; ++y) {
+    for (int x = 0; x < out.width; ++x) {
+      const int from = y - y_reach;
+      float sum = y_bell[0] * rows.at(x, from);
+      for (int j = 1; j <= y_reach; ++j) {
+        sum += y_bell[static_cast<std::size_t>(j)] * (rows.at(x, from - j) + rows.at(x, from + j));
       }
       out.values[out.index(x, y)] = sum;
     }

@@ -41,7 +41,8 @@ Plane coverage(const RunLayer& layer, std::array<double, 2> pitch_mm,
 // Averages of cells of factor[0] x factor[1] samples.
 Plane coarsened(const Plane& plane, std::array<int, 2> factor);
 
-// Convolved with a normal distribution of this standard deviation; powder all around.
+// Convolved with a normal distribution of this standard deviation; powder all around. The result
+// reaches three deviations further on each side.
 Plane blurred(const Plane& plane, double sigma_mm);
 
 // sum += weight * plane; both of one grid.

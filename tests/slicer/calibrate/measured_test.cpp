@@ -130,10 +130,14 @@ void write_scan(const std::string& folder, const Part& part, const StackInfo& fr
       }
     }
     if (scan.blur_mm > 0) plane = blurred(plane, scan.blur_mm);
+    const int aside = (plane.width - info.size[0]) / 2;
     std::vector<std::byte> rgb;
-    for (const float value : plane.values) {
-      const double grey = std::clamp(40 + 170 * (value + noise(random)), 0.0, 255.0);
-      rgb.insert(rgb.end(), 3, static_cast<std::byte>(std::lround(grey)));
+    for (int y = 0; y < info.size[1]; ++y) {
+      for (int x = 0; x < info.size[0]; ++x) {
+        const double value = plane.at(x + aside, y + aside) + noise(random);
+        const double grey = std::clamp(40 + 170 * value, 0.0, 255.0);
+        rgb.insert(rgb.end(), 3, static_cast<std::byte>(std::lround(grey)));
+      }
     }
     stack.write_rgb(k, rgb);
   }
