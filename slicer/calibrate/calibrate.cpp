@@ -130,10 +130,11 @@ class Calibrator {
     std::vector<Fitted> fitted;
     for (std::size_t i = 0; i < std::min(kMostTried, choices.size()); ++i) {
       const Candidate& candidate = candidates[choices[i].winner];
-      step_(fmt::format("fitting {}", candidate.kind));
       Model model = refit_with_taken(candidate.apply(choices[i].coefficients), candidate.effect,
                                      kTrialRounds);
       const double wrong = wrong_share(job_, model, seen_);
+      step_(fmt::format("fitted {}: {:.3f} of the residual, printed error {:.5f}", candidate.kind,
+                        choices[i].share, wrong));
       fitted.push_back({&candidate, &choices[i], std::move(model), wrong});
     }
     // A hundredth is no reason to prefer what is less simple or has no name.
@@ -249,7 +250,10 @@ class Calibrator {
 
 std::string verdict_of(const std::vector<FoundEffect>& effects) {
   if (effects.empty()) return "none";
-  return effects.front().kind == "empirical" ? "unexplained" : "effect";
+  const bool nameless = std::all_of(effects.begin(), effects.end(), [](const FoundEffect& effect) {
+    return effect.kind == "empirical";
+  });
+  return nameless ? "unexplained" : "effect";
 }
 
 }  // namespace

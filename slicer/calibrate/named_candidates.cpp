@@ -62,7 +62,7 @@ class Catalogue {
           return out;
         });
     out_.back().effect = level_place();
-    for (const double radius_mm : {0.75, 1.5, 2.5, 4.0}) {
+    for (const double radius_mm : {0.75, 1.1, 1.5, 2.0, 2.5, 3.2, 4.0}) {
       if (has("density")) break;
       const auto effect = [radius_mm](double strength) {
         return EffectSpec{
@@ -114,7 +114,7 @@ class Catalogue {
           gaussian);
       out_.back().effect = place;
     }
-    for (const double width_mm : {0.6, 1.0, 1.6, 2.4}) {
+    for (const double width_mm : {0.6, 1.0, 1.6}) {
       if (has("tail")) break;
       add_from_zero(
           "kernel_shape", {"x", "local", {}}, 0.05,

@@ -121,8 +121,8 @@ class Scan {
         out_.back().kind = "axis_calib";
       }
     }
-    for (int i = 1; i < 24; ++i) {
-      const double at = origin + size * i / 24;
+    constexpr double kStepMm = 0.2;
+    for (double at = origin + kStepMm; at < origin + size; at += kStepMm) {
       add(acts, {name, "step", {{"at_mm", {at}}}}, along, {{"at", {at}}}, name, "step",
           [at, place](const Spot& s) { return place(s) >= at ? 1.0 : 0.0; });
     }

@@ -21,7 +21,7 @@ void add(const EffectSpec& spec, const Grid& grid, ModelForm& form) {
 }  // namespace
 
 EffectKind tail_kind() {
-  constexpr double kMaxWidthMm = 10;
+  constexpr double kMaxWidthMm = 2;
   return {"tail", {}, {{"share", 1, 0, 0.9}, {"width_mm", 2, 0, kMaxWidthMm}}, add};
 }
 

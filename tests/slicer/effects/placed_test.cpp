@@ -1,0 +1,187 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Effects that depend on the place on the bed, by hand and against the probe's real numbers.
+#include <gtest/gtest.h>
+
+#include "slicer/calibrate/dose_probe.h"
+#include "slicer/density.h"
+#include "slicer/effects/model.h"
+#include "slicer/error.h"
+#include "tests/support/random.h"
+
+namespace binderjet {
+namespace {
+
+using whole::Random;
+using whole::Volume;
+
+// Voxels of 0.1 mm; a pixel is one voxel.
+const Grid kGrid{{0.1, 0.1, 0.1}, {1, 1, 1}};
+const EffectSpec kSpread{"spread", {{"shape", "box"}}, {{"width_mm", {0.5, 0.3}}}};
+const EffectSpec kThreshold{"threshold", {}, {{"level", {0.5}}}};
+
+// A bar along y from x = 15 to 25 in 40 x 20 pixels.
+RunLayer bar() {
+  RunLayer layer(40);
+  for (int y = 0; y < 20; ++y) layer.append_row(std::vector<int>{15, 25});
+  return layer;
+}
+std::vector<int> middle_row(const RunLayer& layer) {
+  const auto row = layer.row(layer.height() / 2);
+  return {row.begin(), row.end()};
+}
+PrinterModel model(const EffectSpec& effect, const JobPlace& place = {{0, 0}, {4, 2}}) {
+  return {{kSpread, kThreshold, effect}, kGrid, place};
+}
+std::vector<int> printed(const EffectSpec& effect, int layer = 0) {
+  const PrinterModel printer = model(effect);
+  const RunLayer mask = bar();
+  std::vector<const RunLayer*> window(2 * static_cast<std::size_t>(printer.window_reach()) + 1,
+                                      nullptr);
+  window[window.size() / 2] = &mask;
+  return middle_row(printer.print(window, layer));
+}
+
+TEST(PlacedEffects, ShiftsTheMaskByWholeAndHalfVoxels) {
+  EXPECT_EQ(printed({"shift", {}, {{"by_mm", {0.3, 0}}}}), (std::vector<int>{18, 28}));
+  // Half a voxel: at both edges the dose of the voxel under the edge is exactly 1/2.
+  EXPECT_EQ(printed({"shift", {}, {{"by_mm", {0.05, 0}}}}), (std::vector<int>{15, 26}));
+}
+
+TEST(PlacedEffects, ShiftsEvenAndOddLayersApart) {
+  const EffectSpec parity{"parity", {}, {{"by_mm", {0.2, 0}}}};
+  EXPECT_EQ(printed(parity, 4), (std::vector<int>{17, 27}));
+  EXPECT_EQ(printed(parity, 5), (std::vector<int>{13, 23}));
+}
+
+TEST(PlacedEffects, DriftsWithHeight) {
+  // The middle of layer 9 is at 0.95 mm: 0.2 mm of shift there, up to rounding to 1/16 voxel.
+  const EffectSpec drift{"registration_drift", {}, {{"per_mm", {0.2 / 0.95, 0}}}};
+  EXPECT_EQ(printed(drift, 9), (std::vector<int>{17, 27}));
+}
+
+TEST(PlacedEffects, WeakensTheDoseFromALayerOn) {
+  // At 3/5 of the dose the level 1/2 needs 5/6 of the box: the edges draw back.
+  const EffectSpec pause{"pause", {}, {{"at_mm", {1}}, {"amount", {-0.4}}}};
+  EXPECT_EQ(printed(pause, 9), (std::vector<int>{15, 25}));
+  EXPECT_EQ(printed(pause, 10), (std::vector<int>{17, 23}));
+}
+
+TEST(PlacedEffects, LosesARowWhoseJetIsOut) {
+  const RunLayer mask = bar();
+  const PrinterModel printer =
+      model({"jet_out", {}, {{"from_mm", {0.9}}, {"to_mm", {1.1}}, {"amount", {-0.9}}}});
+  const RunLayer out = printer.print(mask);
+  EXPECT_EQ(out.row(8).size(), 2U);
+  EXPECT_TRUE(out.row(9).empty());
+  EXPECT_TRUE(out.row(10).empty());
+  EXPECT_EQ(out.row(11).size(), 2U);
+}
+
+TEST(PlacedEffects, KnowsWhereTheJobIsOnTheBed) {
+  const EffectSpec gradient{
+      "grad_bed", {}, {{"per_mm", {0.05, 0}}, {"per_mm2", {0}}, {"center_mm", {100, 100}}}};
+  const RunLayer mask = bar();
+  const auto count = [&](double x_mm) {
+    return model(gradient, {{x_mm, 100}, {4, 2}}).print(mask).count();
+  };
+  EXPECT_LT(count(94), count(98));
+  EXPECT_LT(count(98), count(104));
+}
+
+TEST(PlacedEffects, BindsFlatFieldsWhereTheGainLiftsThemOverTheLevel) {
+  // A wide field at a dose of 0.45 everywhere; the gain passes 1/0.9 in the middle of the bed only.
+  ModelForm form;
+  form.level = 0.5;
+  form.terms.front().gain = 0.45;
+  form.placed.gains.push_back(
+      {[](const Spot& s) { return s.x_mm > 1 && s.x_mm < 2 ? 0.2 : 0.0; }, 0.2});
+  const PrinterModel printer(form, kGrid);
+  RunLayer mask(40);
+  for (int y = 0; y < 5; ++y) mask.append_row(std::vector<int>{0, 40});
+  EXPECT_EQ(middle_row(printer.print(mask)), (std::vector<int>{10, 20}));
+}
+
+TEST(PlacedEffects, CountsTheSolidShareOfABox) {
+  const RunLayer mask = bar();
+  const RunLayer* const window[] = {nullptr, &mask, &mask};
+  // A box far wider than the layer: 200 solid pixels in two of three layers.
+  const DensityField field(window, kGrid, 10);
+  const double side = 2 * 25 * 4 - 4;  // whole cells around the middle one
+  EXPECT_NEAR(field.at(20, 10), 2 * 200 / (3 * side * side), 1e-3);
+}
+
+TEST(PlacedEffects, RefusesTwoRadiiOfDensity) {
+  const auto density = [](double radius) {
+    return EffectSpec{
+        "density", {}, {{"strength", {0.1}}, {"radius_mm", {radius}}, {"reference", {0.5}}}};
+  };
+  EXPECT_THROW(PrinterModel({kThreshold, density(1), density(2)}, kGrid), Error);
+}
+
+// One of each kind, with numbers that show on a small part.
+std::vector<EffectSpec> one_of_each() {
+  return {{"tail", {}, {{"share", {0.3}}, {"width_mm", {0.8, 1.2}}}},
+          {"rounding", {}, {{"radius_mm", {0.12}}}},
+          {"z_bleed_down", {}, {{"share", {0.4}}}},
+          {"z_wick_up", {}, {{"share", {0.3}}}},
+          {"density", {}, {{"strength", {0.5}}, {"radius_mm", {0.4}}, {"reference", {0.3}}}},
+          {"shift", {}, {{"by_mm", {0.07, -0.13}}}},
+          {"registration_drift", {}, {{"per_mm", {0.3, -0.2}}}},
+          {"layer_shift_low", {}, {{"by_mm", {0.2, 0.1}}, {"height_mm", {0.3}}}},
+          {"parity", {}, {{"by_mm", {0.11, 0.03}}}},
+          {"scale_xyz", {}, {{"by", {0.05, -0.04}}}},
+          {"grad_bed", {}, {{"per_mm", {0.05, -0.1}}, {"per_mm2", {0.02}}, {"center_mm", {1, 2}}}},
+          {"grad_z", {}, {{"per_mm", {-0.2}}, {"from_mm", {0}}}},
+          {"pause", {}, {{"at_mm", {0.25}}, {"amount", {0.3}}}},
+          {"first_layers", {}, {{"amount", {0.5}}, {"height_mm", {0.2}}}},
+          {"band_swath", {}, {{"direction_deg", {30}}, {"period_mm", {1.3}}, {"wave", {0.2, 0.1}}}},
+          {"jet_out", {}, {{"from_mm", {0.8}}, {"to_mm", {1.2}}, {"amount", {-0.5}}}},
+          {"empirical",
+           {{"acts", "shift_x"}, {"axis", "y"}, {"form", "periodic"}},
+           {{"period", {0.9}}, {"wave", {0.1, 0.05}}}},
+          {"empirical",
+           {{"acts", "dose"}, {"axis", "position"}, {"form", "local"}},
+           {{"center_mm", {1.5, 1}}, {"at", {0}}, {"width", {0.5}}, {"amount", {0.4}}}}};
+}
+
+// The streamed engine on runs and integers against the probe's plain sums of real numbers.
+TEST(PlacedEffects, PrintWhatTheProbeSays) {
+  Random random;
+  for (const EffectSpec& effect : one_of_each()) {
+    SCOPED_TRACE(effect.kind);
+    const Grid grid{{0.1, 0.08, 0.1}, {2, 2, 2}};
+    const int layers = 6;
+    const Volume mask = random.volume(30, 24, layers, 4);
+    std::vector<RunLayer> masks;
+    for (int k = 0; k < layers; ++k) masks.push_back(whole::slice(mask, k));
+    const JobPlace place{{3, 5}, {3, 1.92}};
+    const PrinterModel printer({kSpread, kThreshold, effect}, grid, place);
+    const DoseProbe probe(printer.form(), grid, place);
+    for (int k = 0; k < layers; ++k) {
+      std::vector<const RunLayer*> window;
+      for (int n = k - printer.window_reach(); n <= k + printer.window_reach(); ++n) {
+        window.push_back(n < 0 || n >= layers ? nullptr : &masks[static_cast<std::size_t>(n)]);
+      }
+      const RunLayer out = printer.print(window, k);
+      std::vector<DosePlace> places;
+      for (int y = 0; y < out.height(); ++y) {
+        for (int x = 0; x < out.width(); ++x) {
+          places.push_back({static_cast<double>(x), static_cast<double>(y)});
+        }
+      }
+      std::vector<double> margins(places.size());
+      probe.margins(window, k, places, margins);
+      for (std::size_t i = 0; i < places.size(); ++i) {
+        // Flips are placed to 1/32 of a voxel, which is 1/32 of a voxel's share of the kernel.
+        constexpr double kRounding = 0.03;
+        if (std::abs(margins[i]) < kRounding) continue;
+        ASSERT_EQ(out.at(static_cast<int>(places[i].x_vx), static_cast<int>(places[i].y_vx)),
+                  margins[i] > 0)
+            << k << ": " << places[i].x_vx << ", " << places[i].y_vx << " margin " << margins[i];
+      }
+    }
+  }
+}
+
+}  // namespace
+}  // namespace binderjet
