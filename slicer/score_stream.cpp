@@ -3,7 +3,7 @@
 
 #include <utility>
 
-#include "slicer/rows.h"
+#include "slicer/any_slice.h"
 
 namespace binderjet {
 namespace {
@@ -30,21 +30,6 @@ class ComparedStream : public Stream<ComparedLayer> {
   std::unique_ptr<Stream<VoxelLayer>> target_;
   std::unique_ptr<Stream<RunLayer>> printed_;
 };
-
-// Where any slice of a layer is solid.
-RunLayer any_slice(const VoxelLayer& layer) {
-  RunLayer out = layer.slices.front();
-  std::vector<int> row;
-  for (std::size_t s = 1; s < layer.slices.size(); ++s) {
-    RunLayer both(out.width());
-    for (int y = 0; y < out.height(); ++y) {
-      rows::unite(out.row(y), layer.slices[s].row(y), row);
-      both.append_row(row);
-    }
-    out = std::move(both);
-  }
-  return out;
-}
 
 }  // namespace
 

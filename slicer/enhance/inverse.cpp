@@ -6,7 +6,9 @@
 #include <optional>
 #include <utility>
 
+#include "slicer/enhance/spurious.h"
 #include "slicer/enhance/tile_surroundings.h"
+#include "slicer/rows.h"
 #include "slicer/score.h"
 #include "slicer/slicing_operator.h"
 
@@ -142,7 +144,8 @@ bool InverseSolver::acceptable(LayerWindow layers, const RunLayer& mask) const {
   });
 }
 
-// Lost and fused voxels of the middle layer with this mask, as `score` finds them.
+// Lost and fused voxels of the middle layer with this mask, as `score` finds them; what is printed
+// where no part is counts as fused.
 LayerFeatures InverseSolver::vanished(LayerWindow layers, const RunLayer& mask) const {
   std::array<std::optional<ComparedLayer>, 3> compared;
   std::array<const ComparedLayer*, 3> seen{};
@@ -154,7 +157,18 @@ LayerFeatures InverseSolver::vanished(LayerWindow layers, const RunLayer& mask) 
         layer->target, std::make_shared<const RunLayer>(print_with(layers, offset, model_, mask))};
     seen[at] = &*compared[at];
   }
-  return find_features(seen[0], *seen[1], seen[2], search_.grid);
+  LayerFeatures gone = find_features(seen[0], *seen[1], seen[2], search_.grid);
+  const RunLayer spurious = spurious_print(*seen[1]->target, *seen[1]->printed);
+  std::vector<int> both;
+  for (RunLayer& slice : gone.fused) {
+    RunLayer sum(slice.width());
+    for (int y = 0; y < slice.height(); ++y) {
+      rows::unite(slice.row(y), spurious.row(y), both);
+      sum.append_row(both);
+    }
+    slice = std::move(sum);
+  }
+  return gone;
 }
 
 }  // namespace binderjet

@@ -52,7 +52,9 @@ TEST(ColorVerbs, SharesJoinToTheWholeJobWithItsColor) {
 
 TEST(ColorVerbs, ExportWritesBitmapsAndPlanes) {
   const colored::Folder folder;
-  ASSERT_EQ(run("slice " + colored_ball(folder) + " -p z450 -o " + folder.file("ball.bjob")), 0);
+  ASSERT_EQ(run("slice " + colored_ball(folder) + " -p z450 --enhance none -o " +
+                folder.file("ball.bjob")),
+            0);
   ASSERT_EQ(
       run("export " + folder.file("ball.bjob") + " -o " + folder.file("color") + " --what color"),
       0);
@@ -75,11 +77,13 @@ TEST(ColorVerbs, ExportWritesBitmapsAndPlanes) {
 TEST(ColorVerbs, AJobWithoutColorSaysSo) {
   const colored::Folder folder;
   models::write_obj(models::sphere(2, 3), folder.file("plain.obj"));
-  ASSERT_EQ(run("slice " + folder.file("plain.obj") + " -p z450 -o " + folder.file("p.bjob")), 0);
+  ASSERT_EQ(run("slice " + folder.file("plain.obj") + " -p z450 --enhance none -o " +
+                folder.file("p.bjob")),
+            0);
   EXPECT_EQ(run("export " + folder.file("p.bjob") + " -o " + folder.file("c") + " --what color"),
             2);
-  EXPECT_EQ(run("slice " + folder.file("plain.obj") + " -p z450 -o " + folder.file("q.bjob") +
-                " --color-enhance"),
+  EXPECT_EQ(run("slice " + folder.file("plain.obj") + " -p z450 --enhance none -o " +
+                folder.file("q.bjob") + " --color-enhance"),
             0);
   EXPECT_EQ(run("export " + folder.file("q.bjob") + " -o " + folder.file("c") + " --what color"),
             0);

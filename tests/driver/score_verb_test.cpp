@@ -25,13 +25,14 @@ class ScoreVerb : public testing::Test {
     models::write_obj(models::joined(models::box({0, 0, 0}, {6, 6, 1}),
                                      models::box({2.9, 2.95, 0.5}, {3.1, 3.05, 3})),
                       file("pin.obj"));
-    run({"slice", file("pin.obj"), "-p", "z450", "-o", file("pin.bjob")});
+    run({"slice", file("pin.obj"), "-p", "z450", "-o", file("pin.bjob"), "--enhance", "none"});
   }
   std::string file(const std::string& name) const { return folder_ / name; }
   static nlohmann::json run(std::vector<std::string> words) {
     CLI::App program;
     add_slice_verb(program);
     add_score_verb(program);
+    add_explain_verb(program);
     add_simulate_verb(program);
     words.emplace_back("--json");
     words.emplace_back("-q");
@@ -82,13 +83,45 @@ TEST_F(ScoreVerb, ListsItWithItsPlaceAndDrawsIt) {
 }
 
 TEST_F(ScoreVerb, ScoresAPieceOfAJob) {
-  run({"slice", file("pin.obj"), "-p", "z450", "-o", file("piece.bjob"), "--layers", "15:25"});
+  run({"slice", file("pin.obj"), "-p", "z450", "-o", file("piece.bjob"), "--layers", "15:25",
+       "--enhance", "none"});
   const auto score =
       run({"score", file("piece.bjob"), "--target", file("pin.obj"), "--map", file("piece_map")});
   EXPECT_EQ(score["lost"], 1);
   std::ifstream text(file("piece_map/features.json"));
   EXPECT_EQ(nlohmann::json::parse(text)["features"].at(0)["layers"],
             nlohmann::json::parse("[15, 25]"));
+}
+
+TEST_F(ScoreVerb, PutsPlainPaperAndInverseSideBySide) {
+  const auto score = run({"score", file("pin.bjob"), "--target", file("pin.obj"), "--compare"});
+  const auto& plain = score["compare"]["none"];
+  const auto& inverse = score["compare"]["inverse"];
+  EXPECT_EQ(plain["excess"], score["excess"]) << "the job's own masks are plain";
+  EXPECT_EQ(plain["window_excess"], score["window_excess"]);
+  EXPECT_LT(inverse["excess"], plain["excess"]);
+  EXPECT_LT(inverse["excess"], score["compare"]["paper"]["excess"]);
+  EXPECT_EQ(plain["lost"], 1);
+  EXPECT_EQ(inverse["lost"], 0) << "the pin is printed";
+  EXPECT_EQ(inverse["spurious"], 0);
+  EXPECT_LE(inverse["excess"], inverse["window_excess"]["mean"]);
+  EXPECT_LE(inverse["window_excess"]["mean"], inverse["window_excess"]["worst"]);
+}
+
+TEST_F(ScoreVerb, ExplainsAPixelByItsDose) {
+  // Well within the slab: all on, full dose, and without it still enough.
+  const auto why = run({"explain", file("pin.bjob"), "30,50,3"});
+  EXPECT_EQ(why["on"], true);
+  EXPECT_EQ(why["target_share"], 1.0);
+  EXPECT_EQ(why["level"], 0.5);
+  ASSERT_EQ(why["dose"].size(), 4U);
+  EXPECT_NEAR(why["dose"].at(0).get<double>(), 1, 1e-6);
+  // A pixel of 2 x 2 voxels is about 4 of the 16.5 x 10.6 that the box spreads it over.
+  const double share = 4 / (0.7 / (25.4 / 600) * 0.3 / (25.4 / 900));
+  EXPECT_NEAR(why["dose_flipped"].at(0).get<double>(), 1 - share, 1e-6);
+  EXPECT_EQ(why["wrong_if_flipped"], 0);
+  EXPECT_EQ(why["rules_allow_flip"], false) << "a hole of one pixel";
+  EXPECT_THROW(run({"explain", file("pin.bjob"), "30,50,300"}), Error);
 }
 
 TEST_F(ScoreVerb, WritesNoMapOverSomebodysWork) {

@@ -65,8 +65,8 @@ TEST(PaperCuberille, GivesTheSameMasksAndCostsMore) {
                                    file("direct.bjob"), "--enhance", "paper", "--passes", "2"});
   const Cost write =
       run(folder, {"export", file("direct.bjob"), "--cuberille", file("cuberille.ply")});
-  const Cost again =
-      run(folder, {"slice", file("cuberille.ply"), "-p", "z450", "-o", file("again.bjob")});
+  const Cost again = run(folder, {"slice", file("cuberille.ply"), "-p", "z450", "-o",
+                                  file("again.bjob"), "--enhance", "none"});
   const Cost detour = direct + write + again;
 
   std::cout << fmt::format(
