@@ -44,7 +44,8 @@ void add_print_verb(CLI::App& program) {
       ->required();
   verb->add_option("--to", options->to, "usb:, usb://VID:PID/SERIAL, spool:DIR or file:PATH")
       ->required();
-  verb->add_flag("--stream", options->stream, "send each layer of a model as soon as it is sliced, as without this word");
+  verb->add_flag("--stream", options->stream,
+                 "send each layer of a model as soon as it is sliced, as without this word");
   verb->add_option("-p,--profile", options->slice.profile, "a printer profile's name or path");
   add_slice_options(*verb, options->slice);
   const auto console = add_console_options(*verb);

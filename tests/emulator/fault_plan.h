@@ -55,7 +55,7 @@ enum class PrinterFault {
   kSwappedDeviceId,  // its length is little-endian
   kResetClass10,     // SOFT_RESET only in the form of class 1.0
   kPortStatus,       // GET_PORT_STATUS says paper empty and error
-  kHangControl,  // no control request is ever answered
+  kHangControl,      // no control request is ever answered
   kForgetsJob,       // loses what it had acknowledged: no printer may
 };
 

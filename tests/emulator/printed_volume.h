@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What the emulated printer makes of the masks it received: powder, binder, and a physics of its own
-// that no profile and no solver knows.
+// What the emulated printer makes of the masks it received: powder, binder, and a physics of its
+// own that no profile and no solver knows.
 #pragma once
 
 #include <array>

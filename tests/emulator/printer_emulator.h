@@ -61,7 +61,8 @@ class PrinterEmulator : public UsbDevice {
   void set_plan(FaultPlan plan);
   void add_fault(PlannedFault fault);
 
-  // Waits until job number `job` (the first is 1) has so many acknowledged layers; false after 20 s.
+  // Waits until job number `job` (the first is 1) has so many acknowledged layers; false after 20
+  // s.
   bool wait_for_layers(int layers, std::size_t job = 1);
 
   // The evidence.

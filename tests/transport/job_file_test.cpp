@@ -176,8 +176,8 @@ TEST(CutJob, IsReadUpToItsLastWholeLayerAndSaysSo) {
     // Cut behind the first mask and before the next record says its kind: nobody can know that
     // colour was to follow.
     const std::uint64_t mask_end = reader->entries()[0].end();
-    const bool lone_mask = layers == 0 && length >= mask_end &&
-                           length < mask_end + job_format::kRecordHeadBytes;
+    const bool lone_mask =
+        layers == 0 && length >= mask_end && length < mask_end + job_format::kRecordHeadBytes;
     ASSERT_TRUE(cut) << cut.error().what;
     EXPECT_FALSE(cut->whole());
     EXPECT_FALSE(verify_job(folder / "cut.bjob"));
