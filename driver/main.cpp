@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The program: one line for an error, and its kind as the exit status.
 #include <fmt/core.h>
+#include <malloc.h>
 
 #include <CLI/CLI.hpp>
 #include <exception>
@@ -10,8 +11,22 @@
 #include "driver/verbs.h"
 #include "slicer/error.h"
 
+namespace {
+
+// Layers are made and freed by the thousand; pages that go back to the kernel each time come again
+// at the price of a fault.
+void keep_freed_pages() {
+#ifdef __GLIBC__
+  mallopt(M_MMAP_THRESHOLD, 32 << 20);  // the most that glibc takes
+  mallopt(M_TRIM_THRESHOLD, 256 << 20);
+#endif
+}
+
+}  // namespace
+
 int main(int argc, char** argv) {
   using namespace binderjet;
+  keep_freed_pages();
   CLI::App program{"binderjet: the open printer driver for powder-binder 3D printers", "binderjet"};
   program.set_version_flag("--version", "binderjet " BINDERJET_VERSION);
   program.require_subcommand(1);

@@ -7,6 +7,7 @@
 #include <unistd.h>
 
 #include <array>
+#include <chrono>
 #include <cstdio>
 #include <cstdlib>
 #include <filesystem>
@@ -23,6 +24,8 @@ struct Ran {
   std::string out;
   std::string err;
   double peak_rss_mb = 0;
+  double seconds = 0;  // by the clock on the wall
+  double cpu_seconds = 0;
 
   nlohmann::json json() const { return nlohmann::json::parse(out); }
 };
@@ -48,6 +51,7 @@ class Workplace {
   Ran run(const std::vector<std::string>& words, unsigned seconds = 600,
           std::size_t memory_mb = 0) const {
     Ran ran;
+    const auto start = std::chrono::steady_clock::now();
     const pid_t child = fork();
     if (child == 0) {
       limit(RLIMIT_CPU, seconds);
@@ -69,6 +73,8 @@ class Workplace {
     ran.out = text("out.txt");
     ran.err = text("err.txt");
     ran.peak_rss_mb = static_cast<double>(usage.ru_maxrss) / 1024;
+    ran.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+    ran.cpu_seconds = in_seconds(usage.ru_utime) + in_seconds(usage.ru_stime);
     return ran;
   }
 
@@ -78,6 +84,9 @@ class Workplace {
   }
 
  private:
+  static double in_seconds(const timeval& time) {
+    return static_cast<double>(time.tv_sec) + static_cast<double>(time.tv_usec) * 1e-6;
+  }
   static void limit(int resource, rlim_t most) {
     const rlimit limits{most, most};
     setrlimit(static_cast<__rlimit_resource>(resource), &limits);
