@@ -11,9 +11,11 @@
 #include <vector>
 
 #include "driver/console.h"
+#include "driver/files.h"
 #include "driver/mask_source.h"
 #include "driver/printed.h"
 #include "driver/verbs.h"
+#include "driver/viewer.h"
 #include "slicer/color/separate.h"
 #include "slicer/error.h"
 #include "slicer/stack/cuberille.h"
@@ -28,6 +30,7 @@ struct ExportOptions {
   std::string out;
   std::string what = "mask";
   std::string cuberille;
+  std::string html;
   std::string separate;
   bool full_bed = false;
 };
@@ -142,8 +145,9 @@ void export_cuberille(const MaskSource& job, const std::string& path, const Cons
 
 void run(const ExportOptions& options, const Console& console) {
   const MaskSource job = open_job(options.job, console);
-  if (options.out.empty() == options.cuberille.empty()) {
-    throw Error(ErrorKind::kUsage, "export", "name one of -o DIR and --cuberille FILE.ply");
+  if (!options.out.empty() + !options.cuberille.empty() + !options.html.empty() != 1) {
+    throw Error(ErrorKind::kUsage, "export",
+                "name one of -o DIR, --html FILE and --cuberille FILE.ply");
   }
   if (!options.separate.empty() && options.out.empty()) {
     throw Error(ErrorKind::kUsage, "--separate", "needs a folder, -o DIR");
@@ -154,6 +158,8 @@ void run(const ExportOptions& options, const Console& console) {
   }
   if (!options.cuberille.empty()) {
     export_cuberille(job, options.cuberille, console);
+  } else if (!options.html.empty()) {
+    write_text(options.html, viewer_page(job, console));
   } else if (!options.separate.empty()) {
     export_planes(job, options, console);
   } else if (options.what == "color") {
@@ -166,10 +172,11 @@ void run(const ExportOptions& options, const Console& console) {
     write_printed(job, PrinterModel(job.header->profile.effects, job.header->grid, job.place()),
                   job.header->grid, options.out, console);
   }
-  const std::string& out = options.out.empty() ? options.cuberille : options.out;
-  console.result({{"out", out},
-                  {"what", options.separate.empty() ? options.what : options.separate},
-                  {"layers", job.size_px[2]}},
+  const std::string out = options.out + options.cuberille + options.html;
+  std::string what = options.separate.empty() ? options.what : options.separate;
+  if (!options.cuberille.empty()) what = "cuberille";
+  if (!options.html.empty()) what = "html";
+  console.result({{"out", out}, {"what", what}, {"layers", job.size_px[2]}},
                  fmt::format("{}: {} layers", out, job.size_px[2]));
 }
 
@@ -192,6 +199,8 @@ void add_export_verb(CLI::App& program) {
   verb->add_flag("--full-bed", options->full_bed, "masks of the whole bed, the part in its place");
   verb->add_option("--cuberille", options->cuberille,
                    "write the masks' voxels as a PLY mesh (the paper's own output)");
+  verb->add_option("--html", options->html,
+                   "write one page with all layers side by side, for any browser, offline");
   verb->callback([options, console = add_console_options(*verb)] { run(*options, *console); });
 }
 

@@ -45,6 +45,8 @@ ul { margin: 0; padding-left: 1.2rem; }
 @media print { body { background: #fff; } section { break-inside: avoid; } }
 )";
 
+}  // namespace
+
 std::string base64(std::span<const std::byte> bytes) {
   constexpr const char* kDigits =
       "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
@@ -61,8 +63,6 @@ std::string base64(std::span<const std::byte> bytes) {
   }
   return out;
 }
-
-}  // namespace
 
 std::string escaped(const std::string& text) {
   std::string out;

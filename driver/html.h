@@ -14,6 +14,8 @@ namespace binderjet::html {
 
 std::string escaped(const std::string& text);
 
+std::string base64(std::span<const std::byte> bytes);
+
 // A whole page around `body`, which is markup.
 std::string page(const std::string& title, const std::string& body);
 
