@@ -8,7 +8,7 @@
 #include <new>
 
 #include "driver/console.h"
-#include "driver/verbs.h"
+#include "driver/program.h"
 #include "slicer/error.h"
 
 namespace {
@@ -27,26 +27,13 @@ void keep_freed_pages() {
 int main(int argc, char** argv) {
   using namespace binderjet;
   keep_freed_pages();
-  CLI::App program{"binderjet: the open printer driver for powder-binder 3D printers", "binderjet"};
-  program.set_version_flag("--version", "binderjet " BINDERJET_VERSION);
-  program.require_subcommand(1);
-  add_slice_verb(program);
-  add_export_verb(program);
-  add_simulate_verb(program);
-  add_score_verb(program);
-  add_explain_verb(program);
-  add_coupon_verb(program);
-  add_calibrate_verb(program);
-  add_join_verb(program);
-  add_print_verb(program);
-  add_profile_verb(program);
-
+  const auto program = make_program();
   catch_interrupts();
   try {
-    program.parse(argc, argv);
+    program->parse(argc, argv);
     return 0;
   } catch (const CLI::ParseError& error) {
-    const int status = program.exit(error);
+    const int status = program->exit(error);
     return status == 0 ? 0 : static_cast<int>(ErrorKind::kUsage);
   } catch (const Error& error) {
     fmt::print(stderr, "binderjet: {}\n", error.what());

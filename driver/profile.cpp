@@ -200,11 +200,15 @@ Grid Profile::grid(std::optional<double> layer) const {
   return {{kMmPerInch / dpi[0], kMmPerInch / dpi[1], height}, detail_vx};
 }
 
+// Those of the installation that the program is part of; and, before it is installed, those of the
+// source.
 std::vector<std::string> profile_folders() {
+  std::error_code error;
+  const fs::path program = fs::read_symlink("/proc/self/exe", error);
   std::vector<std::string> folders;
-  for (const char* folder : {BINDERJET_SOURCE_PROFILES, BINDERJET_PROFILES}) {
-    std::error_code error;
-    if (fs::is_directory(folder, error)) folders.emplace_back(folder);
+  for (const fs::path& folder : {program.parent_path() / BINDERJET_INSTALLED_PROFILES,
+                                 fs::path(BINDERJET_SOURCE_PROFILES)}) {
+    if (fs::is_directory(folder, error)) folders.push_back(folder.lexically_normal().string());
   }
   return folders;
 }

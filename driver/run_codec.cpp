@@ -7,7 +7,7 @@ namespace binderjet {
 namespace {
 
 void put_varint(std::uint32_t value, std::string& out) {
-  for (; value >= 0x80; value >>= 7) out += static_cast<char>(value & 0x7f | 0x80);
+  for (; value >= 0x80; value >>= 7) out += static_cast<char>((value & 0x7f) | 0x80);
   out += static_cast<char>(value);
 }
 
