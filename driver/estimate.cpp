@@ -21,17 +21,32 @@ std::string hours_and_minutes(double minutes) {
 
 }  // namespace
 
-void report(const JobHeader& header, const Totals& totals, const std::string& out,
-            const std::vector<std::string>& warnings, const Console& console) {
+Estimate estimate_of(const JobHeader& header, const Totals& totals) {
   const Profile& profile = header.profile;
   const double rate = (profile.layers_per_minute[0] + profile.layers_per_minute[1]) / 2;
-  const double print_minutes = header.layers() / rate + profile.dry_minutes;
   const auto& pitch = header.grid.pitch_mm;
   constexpr double kMm3PerMl = 1000;
-  const double wetted_ml =
+  Estimate estimate;
+  estimate.print_minutes = header.layers() / rate + profile.dry_minutes;
+  estimate.powder_ml =
       static_cast<double>(totals.mask_px) * pitch[0] * pitch[1] * pitch[2] / kMm3PerMl;
-  const double binder_ml = wetted_ml * profile.binder_per_powder;
+  estimate.binder_ml = estimate.powder_ml * profile.binder_per_powder;
+  return estimate;
+}
 
+std::string text_of(const Estimate& estimate, const JobHeader& header) {
+  const Profile& profile = header.profile;
+  return fmt::format(
+      "printing takes about {} ({:g} to {:g} layers a minute, {} to dry), "
+      "about {:.1f} ml of binder for {:.1f} ml of powder",
+      hours_and_minutes(estimate.print_minutes), profile.layers_per_minute[0],
+      profile.layers_per_minute[1], hours_and_minutes(profile.dry_minutes), estimate.binder_ml,
+      estimate.powder_ml);
+}
+
+void report(const JobHeader& header, const Totals& totals, const std::string& out,
+            const std::vector<std::string>& warnings, const Console& console) {
+  const Estimate estimate = estimate_of(header, totals);
   const nlohmann::ordered_json json = {{"job", out},
                                        {"layers", totals.layers},
                                        {"size_px", header.box.size_px},
@@ -39,17 +54,12 @@ void report(const JobHeader& header, const Totals& totals, const std::string& ou
                                        {"mask_pixels", totals.mask_px},
                                        {"seconds", totals.seconds},
                                        {"peak_rss_mb", peak_rss_mb()},
-                                       {"print_minutes", print_minutes},
-                                       {"binder_ml", binder_ml},
+                                       {"print_minutes", estimate.print_minutes},
+                                       {"binder_ml", estimate.binder_ml},
                                        {"warnings", warnings}};
-  console.result(
-      json,
-      fmt::format("{}: {} layers of {} x {} pixels, {:.2f} s\n"
-                  "printing takes about {} ({:g} to {:g} layers a minute, {} to dry), "
-                  "about {:.1f} ml of binder",
-                  out, totals.layers, header.box.size_px[0], header.box.size_px[1], totals.seconds,
-                  hours_and_minutes(print_minutes), profile.layers_per_minute[0],
-                  profile.layers_per_minute[1], hours_and_minutes(profile.dry_minutes), binder_ml));
+  console.result(json, fmt::format("{}: {} layers of {} x {} pixels, {:.2f} s\n{}", out,
+                                   totals.layers, header.box.size_px[0], header.box.size_px[1],
+                                   totals.seconds, text_of(estimate, header)));
 }
 
 }  // namespace binderjet

@@ -31,6 +31,15 @@ struct Totals {
   }
 };
 
+// What printing takes of time and material.
+struct Estimate {
+  double print_minutes = 0;  // at the mean of the profile's rates, and drying
+  double binder_ml = 0;
+  double powder_ml = 0;  // wetted, and gone with the part
+};
+Estimate estimate_of(const JobHeader& header, const Totals& totals);
+std::string text_of(const Estimate& estimate, const JobHeader& header);
+
 // The result of `slice`, for a person or as JSON.
 void report(const JobHeader& header, const Totals& totals, const std::string& out,
             const std::vector<std::string>& warnings, const Console& console);

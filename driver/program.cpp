@@ -17,6 +17,7 @@ std::unique_ptr<CLI::App> make_program() {
   add_simulate_verb(*program);
   add_score_verb(*program);
   add_explain_verb(*program);
+  add_check_verb(*program);
   add_coupon_verb(*program);
   add_calibrate_verb(*program);
   add_join_verb(*program);

@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "driver/found_regions.h"
 #include "driver/mask_source.h"
 #include "slicer/grid.h"
 #include "slicer/score_stream.h"
@@ -30,7 +31,7 @@ class ScoreMap {
   std::array<double, 3> origin_mm_;  // of voxel 0, 0 of slice 0 on the bed
   Grid grid_;
   StackWriter stack_;
-  std::vector<Feature> features_;
+  FoundRegions found_;
 };
 
 }  // namespace binderjet

@@ -17,6 +17,7 @@ void add_profile_verb(CLI::App& program);
 void add_simulate_verb(CLI::App& program);
 void add_score_verb(CLI::App& program);
 void add_explain_verb(CLI::App& program);
+void add_check_verb(CLI::App& program);
 void add_coupon_verb(CLI::App& program);
 void add_calibrate_verb(CLI::App& program);
 

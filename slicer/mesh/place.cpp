@@ -310,9 +310,9 @@ std::string doubtful_size(const BedRequest& part) {
   const double largest = std::max({size[0], size[1], size[2]});
   if (part.unit_declared || largest >= 1) return "";
   return fmt::format(
-      "{}: the whole part is only {}; if the file is in metres or inches, say --units m ({}) or "
+      "the whole part is only {}; if the file is in metres or inches, say --units m ({}) or "
       "--units in ({})",
-      part.where, size_text(size), size_text({size[0] * 1000, size[1] * 1000, size[2] * 1000}),
+      size_text(size), size_text({size[0] * 1000, size[1] * 1000, size[2] * 1000}),
       size_text({size[0] * 25.4, size[1] * 25.4, size[2] * 25.4}));
 }
 
