@@ -1,15 +1,16 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: GPL-3.0-or-later
-# The tests of transport and of the emulated printer once more with the address and the
-# undefined-behaviour sanitizer, as a user without rights; builds into build-sanitize/ (or $1).
+# The tests of transport and of the emulated printer, those too that run the program, once more with
+# the address and the undefined-behaviour sanitizer, as a user without rights; builds into
+# build-sanitize/ (or $1).
 set -euo pipefail
 cd "$(dirname "$0")/.."
 build=${1:-build-sanitize}
-tests=(transport_test emulator_test fuzz_test)
+tests=(transport_test emulator_test usb_test fuzz_test)
 
 cmake -S . -B "$build" -G Ninja -DCMAKE_BUILD_TYPE=None \
   -DCMAKE_CXX_FLAGS="-O1 -g1 -fsanitize=address,undefined -fno-sanitize-recover=undefined"
-cmake --build "$build" -j 2 -t "${tests[@]}"
+cmake --build "$build" -j 2 -t binderjet "${tests[@]}"
 
 # The preloaded part of umockdev comes before the sanitizer's, which is right here.
 export ASAN_OPTIONS=verify_asan_link_order=0
