@@ -6,7 +6,7 @@
 #include <map>
 #include <utility>
 
-#include "slicer/enhance/active_tiles.h"
+#include "slicer/enhance/search_tiles.h"
 #include "slicer/enhance/change_count.h"
 #include "slicer/enhance/tile_surroundings.h"
 #include "slicer/rows.h"
@@ -72,7 +72,7 @@ void LayerSearch::find_tiles() {
   }
   const std::array<int, 2> reach{std::max(-reach_vx_.x0, reach_vx_.x1),
                                  std::max(-reach_vx_.y0, reach_vx_.y1)};
-  for (const Rect& rect : active_tiles(slices, by_.grid, reach)) {
+  for (const Rect& rect : search_tiles(slices, by_.grid, reach)) {
     tiles_.push_back({rect.grown(kOverlapPx, kOverlapPx).cut(box_), {}});
   }
 }
