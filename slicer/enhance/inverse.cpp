@@ -25,10 +25,10 @@ std::vector<StampedModel> weighted(const std::vector<PrinterModel>& models, cons
   return stamped(models, weights, grid);
 }
 
-double wanted_share(const ModelForm& form) {
+double level_share(const ModelForm& form) {
   double gains = 0;
   for (const DoseTerm& term : form.terms) gains += term.gain;
-  return 1 - form.level / gains;
+  return form.level / gains;
 }
 
 std::int64_t wrong(const InverseLayer& layer, const RunLayer& printed) {
@@ -47,8 +47,11 @@ std::int64_t voxels(const LayerFeatures& features) {
 
 InverseSolver::InverseSolver(std::vector<PrinterModel> window, const Grid& grid,
                              const MaskRules& rules)
-    : model_(window.front()),
-      search_{weighted(window, grid), offsets_of(model_.form()), wanted_share(model_.form()), rules,
+    : search_{window.front(),
+              weighted(window, grid),
+              offsets_of(window.front().form()),
+              level_share(window.front().form()),
+              rules,
               grid} {
   const std::set<int>& printed = search_.offsets.printed;
   stride_ = *printed.rbegin() - *printed.begin() + 1;
@@ -94,12 +97,21 @@ InverseLayer InverseSolver::rescue(LayerWindow layers) const {
   return out;
 }
 
+InverseLayer InverseSolver::settle(LayerWindow layers) const {
+  InverseLayer out = *layer_at(layers, 0);
+  const bool worse = wrong(out, print_with(layers, 0, search_.printer, *out.mask)) >
+                     wrong(out, print_plain(layers, 0, search_.printer));
+  if (worse) out.mask = plain(out.number, out.target).mask;
+  return out;
+}
+
 PixelReasons InverseSolver::reasons(LayerWindow layers, int x, int y) const {
   const auto [rx, ry, rz] = search_.grid.detail_vx;
   const Rect pixel{x, y, x + 1, y + 1};
   const Rect voxels{x * rx, y * ry, (x + 1) * rx, (y + 1) * ry};
   Plane<std::uint8_t> mask;
-  TileSurroundings around(layers, search_.offsets, mask);
+  const WindowPlaces places(search_.printer, search_.grid, layers, search_.offsets);
+  TileSurroundings around(layers, search_.offsets, places, mask);
   LocalDose dose(search_.models, search_.grid, pixel, around);
   mask.reset(dose.mask_rect().grown(search_.rules.most(), search_.rules.most()), 0);
   add_layer(*layer_at(layers, 0)->mask, std::uint8_t{1}, mask);
@@ -110,7 +122,7 @@ PixelReasons InverseSolver::reasons(LayerWindow layers, int x, int y) const {
   std::uint8_t& state = *mask.at(x, y);
   const int sign = state != 0 ? -1 : 1;
   why.on = state != 0;
-  why.level = model_.form().level;
+  why.level = search_.printer.form().level;
   Plane<int> solid(voxels);
   for (const RunLayer& slice : layer_at(layers, 0)->target->slices) add_layer(slice, 1, solid);
   const auto doses = [&] {
@@ -137,10 +149,10 @@ bool InverseSolver::acceptable(LayerWindow layers, const RunLayer& mask) const {
   return std::all_of(printed.begin(), printed.end(), [&](int offset) {
     const InverseLayer* layer = layer_at(layers, offset);
     if (layer == nullptr) return true;
-    const std::int64_t now = wrong(*layer, print_with(layers, offset, model_, mask));
-    if (now <= wrong(*layer, print_plain(layers, offset, model_))) return true;
+    const std::int64_t now = wrong(*layer, print_with(layers, offset, search_.printer, mask));
+    if (now <= wrong(*layer, print_plain(layers, offset, search_.printer))) return true;
     const RunLayer& before = *layer_at(layers, 0)->mask;
-    return now <= wrong(*layer, print_with(layers, offset, model_, before));
+    return now <= wrong(*layer, print_with(layers, offset, search_.printer, before));
   });
 }
 
@@ -153,8 +165,8 @@ LayerFeatures InverseSolver::vanished(LayerWindow layers, const RunLayer& mask) 
     const InverseLayer* layer = layer_at(layers, offset);
     if (layer == nullptr) continue;
     const auto at = static_cast<std::size_t>(offset + 1);
-    compared[at] = ComparedLayer{
-        layer->target, std::make_shared<const RunLayer>(print_with(layers, offset, model_, mask))};
+    compared[at] = ComparedLayer{layer->target, std::make_shared<const RunLayer>(print_with(
+                                                    layers, offset, search_.printer, mask))};
     seen[at] = &*compared[at];
   }
   LayerFeatures gone = find_features(seen[0], *seen[1], seen[2], search_.grid);

@@ -39,10 +39,15 @@ class InverseSolver {
   InverseSolver(std::vector<PrinterModel> window, const Grid& grid, const MaskRules& rules);
 
   // How many layers on each side of a layer improve() and rescue() look at.
-  int reach() const { return std::max(2, 2 * model_.window_reach()); }
+  int reach() const { return std::max(2, 2 * search_.printer.window_reach()); }
   // Layers so many apart (or a multiple) print into no common layer, so all of them may be improved
   // at once and none spoils what another one saw.
   int stride() const { return stride_; }
+  // Whether a layer's print also depends on other layers' masks through their density, which a
+  // search takes as it is: then layers are to be improved again, and settled in the end.
+  bool follows_density() const {
+    return search_.printer.form().placed.density_radius_mm.has_value();
+  }
 
   // Layer `number` of the job with its plain mask, or what the rules leave of it.
   InverseLayer plain(int number, Shared<VoxelLayer> target) const;
@@ -51,6 +56,9 @@ class InverseSolver {
   InverseLayer improve(LayerWindow layers, bool anew) const;
   // The same with fewer voxels of lost and fused features (slicer/features.h), if there are any.
   InverseLayer rescue(LayerWindow layers) const;
+  // The middle layer with its plain mask again if what the others became has made its print worse
+  // than plain.
+  InverseLayer settle(LayerWindow layers) const;
   // Of pixel (x, y) of the middle layer, its mask so far.
   PixelReasons reasons(LayerWindow layers, int x, int y) const;
 
@@ -58,7 +66,6 @@ class InverseSolver {
   bool acceptable(LayerWindow layers, const RunLayer& mask) const;
   LayerFeatures vanished(LayerWindow layers, const RunLayer& mask) const;
 
-  PrinterModel model_;
   SearchModel search_;
   int stride_ = 1;
 };

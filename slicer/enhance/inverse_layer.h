@@ -38,6 +38,10 @@ struct ModelOffsets {
 };
 ModelOffsets offsets_of(const ModelForm& form);
 
+// The masks so far that the model wants to see for the layer at `offset`.
+std::vector<const RunLayer*> masks_around(LayerWindow layers, int offset,
+                                          const PrinterModel& model);
+
 // What becomes of the layer at `offset`, which must be there: with the plain masks, and with those
 // so far but `own` for the middle layer.
 RunLayer print_plain(LayerWindow layers, int offset, const PrinterModel& model);

@@ -6,8 +6,8 @@
 #include <map>
 #include <utility>
 
-#include "slicer/enhance/search_tiles.h"
 #include "slicer/enhance/change_count.h"
+#include "slicer/enhance/search_tiles.h"
 #include "slicer/enhance/tile_surroundings.h"
 #include "slicer/rows.h"
 
@@ -47,10 +47,11 @@ bool meet(const std::vector<RunLayer>& slices, const Rect& rect) {
 
 }  // namespace
 
-LayerSearch::LayerSearch(const SearchModel& by, LayerWindow layers) : by_(by), layers_(layers) {
+LayerSearch::LayerSearch(const SearchModel& by, LayerWindow layers)
+    : by_(by), layers_(layers), places_(by.printer, by.grid, layers, by.offsets) {
   const RunLayer& before = *layer_at(layers, 0)->mask;
   box_ = {0, 0, before.width(), before.height()};
-  const TileSurroundings nothing(layers_, by_.offsets, mask_);
+  const TileSurroundings nothing(layers_, by_.offsets, places_, mask_);
   const LocalDose one(by_.models, by_.grid, {0, 0, 1, 1}, nothing);
   reach_vx_ = one.voxel_rect();
   // Tiles at the box's edge ask for the mask beyond it.
@@ -102,7 +103,7 @@ void LayerSearch::search(std::span<Tile> tiles, bool anew) {
 // Finds the pixels to search on. Where all that a pixel can do is good, or all is bad, it is
 // settled; else, to begin with, it is on if a straight edge through what it reaches wants it on.
 void LayerSearch::look_over(Tile& tile, bool anew) {
-  TileSurroundings around(layers_, by_.offsets, mask_);
+  TileSurroundings around(layers_, by_.offsets, places_, mask_);
   const LocalDose dose(by_.models, by_.grid, tile.rect, around);
   around.look_at(dose);
   std::map<int, ChangeCount> changes;
@@ -113,14 +114,22 @@ void LayerSearch::look_over(Tile& tile, bool anew) {
       const PixelSight sight = look(dose, around, changes, x, y);
       const bool open = sight.least_cost < 0 && sight.most_cost > 0;
       if (open) tile.pixels.push_back({x, y});
-      if (anew) *mask_.at(x, y) = open ? sight.wanted >= by_.wanted : sight.least_cost < 0;
+      if (!anew) continue;
+      *mask_.at(x, y) = open ? sight.wanted >= wanted_at(x, y) : sight.least_cost < 0;
     }
   }
 }
 
+// A straight edge needs the pixels that have more than this share of their binder within.
+double LayerSearch::wanted_at(int x, int y) const {
+  if (!places_.has_gains()) return 1 - by_.level_share;
+  const auto [rx, ry, rz] = by_.grid.detail_vx;
+  return 1 - by_.level_share / places_.gain(0, x * rx + rx / 2, y * ry + ry / 2);
+}
+
 void LayerSearch::search(const Tile& tile) {
   if (tile.pixels.empty()) return;
-  TileSurroundings around(layers_, by_.offsets, mask_);
+  TileSurroundings around(layers_, by_.offsets, places_, mask_);
   LocalDose dose(by_.models, by_.grid, tile.rect, around);
   around.look_at(dose);
   dose.reset();
