@@ -42,8 +42,8 @@ void run(const Printer& printer, const Wanted& coupon, const Wanted& wanted, Tal
   const PrintScore& none = loop.second.at("none");
   const PrintScore& paper = loop.second.at("paper");
   const PrintScore& inverse = loop.second.at("inverse");
-  fmt::print("{:20} {:18}  {:19}  {:18}  {:18} {}\n", printer.name, row(none), row(loop.declared),
-             row(paper), row(inverse), effects.empty() ? " none" : effects);
+  fmt::print("{:20} {:18}  {:18}  {:18} {}\n", printer.name, row(none), row(paper), row(inverse),
+             effects.empty() ? " nothing" : effects);
   std::fflush(stdout);
   ++tally.printers;
   tally.below_none += inverse.voxels.excess() < none.voxels.excess() ? 1 : 0;
@@ -61,12 +61,10 @@ int main(int argc, char** argv) {
     repair_mesh(file.mesh, argv[2]);
     wanted = scaled(std::move(file.mesh), std::stod(argv[3]) * file.unit_mm);
   }
-  fmt::print(
-      "excess lost/fused/spurious of the print against the model\n{:20} {:18}  {:18}  {:18}  {:18} "
-      " found\n",
-      "hidden printer", "none", "inverse as declared", "paper, calibrated", "inverse, calibrated");
+  fmt::print("excess and lost/fused/spurious of the second print against the model\n");
+  fmt::print("{:20} {:18}  {:18}  {:18}  found\n", "hidden printer", "none", "paper", "inverse");
   std::vector<Printer> printers{Printer{}};
-  printers.front().name = "as declared";
+  printers.front().name = "nothing hidden";
   for (const auto& set : {catalogue(1), nameless(), pairs()}) {
     printers.insert(printers.end(), set.begin(), set.end());
   }
