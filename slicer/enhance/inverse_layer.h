@@ -14,13 +14,19 @@
 
 namespace binderjet {
 
+// What is wrong with a layer's print beyond single voxels.
+struct LayerFaults {
+  LayerFeatures gone;  // lost and fused, under the nominal model
+  RunLayer barren;     // printed where no part is, under any model of the window
+};
+
 // Shared, for most steps change one of its parts only.
 struct InverseLayer {
   Shared<VoxelLayer> target;
   Shared<RunLayer> plain;  // its mask without enhancement
   Shared<RunLayer> mask;   // its mask so far; obeys the rules
-  // Features that have vanished from its print before and shall not again.
-  std::vector<Shared<LayerFeatures>> stressed;
+  // Faults that its print has had before and shall not have again.
+  std::vector<Shared<LayerFaults>> stressed;
   int number = 0;  // in the job, from 0 on the bed
 };
 

@@ -33,13 +33,11 @@ PixelSight look(const LocalDose& dose, const Surroundings& around,
   return sight.least_cost < 0 && sight.most_cost > 0 ? dose.sight(x, y) : sight;
 }
 
-bool meet(const std::vector<RunLayer>& slices, const Rect& rect) {
-  for (const RunLayer& slice : slices) {
-    for (int y = rect.y0; y < rect.y1; ++y) {
-      const rows::Row row = slice.row(y);
-      for (std::size_t i = 0; i < row.size(); i += 2) {
-        if (row[i] < rect.x1 && row[i + 1] > rect.x0) return true;
-      }
+bool meets(const RunLayer& layer, const Rect& rect) {
+  for (int y = rect.y0; y < rect.y1; ++y) {
+    const rows::Row row = layer.row(y);
+    for (std::size_t i = 0; i < row.size(); i += 2) {
+      if (row[i] < rect.x1 && row[i + 1] > rect.x0) return true;
     }
   }
   return false;
@@ -80,14 +78,15 @@ void LayerSearch::find_tiles() {
 
 void LayerSearch::run(bool anew) { search(tiles_, anew); }
 
-void LayerSearch::run_near(const LayerFeatures& features) {
+void LayerSearch::run_near(std::span<const RunLayer* const> places) {
   std::vector<Tile> near;
   for (const Tile& tile : tiles_) {
     const std::array<int, 2> r{by_.grid.detail_vx[0], by_.grid.detail_vx[1]};
     const Rect voxels{tile.rect.x0 * r[0] + reach_vx_.x0, tile.rect.y0 * r[1] + reach_vx_.y0,
                       tile.rect.x1 * r[0] + reach_vx_.x1, tile.rect.y1 * r[1] + reach_vx_.y1};
-    if (meet(features.lost, voxels) || meet(features.fused, voxels))
-      near.push_back({tile.rect, {}});
+    const bool is_near = std::any_of(places.begin(), places.end(),
+                                     [&](const RunLayer* place) { return meets(*place, voxels); });
+    if (is_near) near.push_back({tile.rect, {}});
   }
   search(near, true);
 }
@@ -95,7 +94,11 @@ void LayerSearch::run_near(const LayerFeatures& features) {
 void LayerSearch::search(std::span<Tile> tiles, bool anew) {
   for (Tile& tile : tiles) look_over(tile, anew);
   if (anew) {
-    for (const Tile& tile : tiles) obey(by_.rules, tile.rect, mask_);
+    // What a tile leaves of an island or a hole may lie beside it.
+    const int most = by_.rules.most();
+    for (const Tile& tile : tiles) {
+      obey(by_.rules, tile.rect.grown(most, most).cut(box_), mask_);
+    }
   }
   for (const Tile& tile : tiles) search(tile);
 }

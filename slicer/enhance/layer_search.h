@@ -35,8 +35,8 @@ class LayerSearch {
 
   // Searches the whole layer; `anew` forgets its mask so far.
   void run(bool anew);
-  // Searches anew where pixels reach these features (of the layer, slice by slice).
-  void run_near(const LayerFeatures& features);
+  // Searches anew where pixels reach what is 1 in any of these layers, on the voxel grid.
+  void run_near(std::span<const RunLayer* const> places);
 
   RunLayer mask() const { return to_layer(mask_, box_.x1, box_.y1); }
 

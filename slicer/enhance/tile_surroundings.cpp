@@ -13,11 +13,14 @@ void TileSurroundings::look_at(const LocalDose& dose) {
     find_gains(offset, dose.voxel_rect());
     if (layer == nullptr) continue;
     for (const RunLayer& slice : layer->target->slices) add_layer(slice, -2, cost);
-    if (offset != 0 || layer->stressed.empty()) continue;
-    stressed_ = cost;
-    for (const Shared<LayerFeatures>& features : layer->stressed) {
-      for (const RunLayer& slice : features->lost) add_layer(slice, -kStress, *stressed_);
-      for (const RunLayer& slice : features->fused) add_layer(slice, kStress, *stressed_);
+    for (const Shared<LayerFaults>& faults : layer->stressed) {
+      add_layer(faults->barren, kStress, cost);
+    }
+    if (layer->stressed.empty()) continue;
+    Plane<int>& stressed = stressed_[offset] = cost;
+    for (const Shared<LayerFaults>& faults : layer->stressed) {
+      for (const RunLayer& slice : faults->gone.lost) add_layer(slice, -kStress, stressed);
+      for (const RunLayer& slice : faults->gone.fused) add_layer(slice, kStress, stressed);
     }
   }
   for (const int offset : offsets_.masks) {

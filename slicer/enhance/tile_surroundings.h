@@ -4,7 +4,6 @@
 
 #include <array>
 #include <map>
-#include <optional>
 
 #include "slicer/enhance/inverse_layer.h"
 #include "slicer/enhance/local_dose.h"
@@ -13,8 +12,9 @@
 
 namespace binderjet {
 
-// A voxel of a stressed feature counts this much, in its slice and under the nominal model: more
-// than all that a pixel reaches, so that no other gain makes up for its loss.
+// A voxel of a stressed feature counts this much, in its slice and under the nominal model, and one
+// that shall stay barren under all models: more than all that a pixel reaches, so that no other
+// gain makes up for it.
 constexpr int kStress = 1000;
 
 class TileSurroundings : public Surroundings {
@@ -28,7 +28,8 @@ class TileSurroundings : public Surroundings {
   void look_at(const LocalDose& dose);
 
   const Plane<int>& cost(int layer, bool nominal) const override {
-    return nominal && layer == 0 && stressed_ ? *stressed_ : costs_.at(layer);
+    const auto stressed = stressed_.find(layer);
+    return nominal && stressed != stressed_.end() ? stressed->second : costs_.at(layer);
   }
   const Plane<std::uint8_t>& mask(int layer) const override {
     return layer == 0 ? own_ : masks_.at(layer);
@@ -47,7 +48,7 @@ class TileSurroundings : public Surroundings {
   const WindowPlaces& places_;
   const Plane<std::uint8_t>& own_;
   std::map<int, Plane<int>> costs_;
-  std::optional<Plane<int>> stressed_;  // the middle layer's, with its stressed features
+  std::map<int, Plane<int>> stressed_;  // with the features that are stressed
   std::map<int, Plane<std::uint8_t>> masks_;
   std::map<int, Plane<float>> gains_;
 };
