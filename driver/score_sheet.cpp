@@ -1,7 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "driver/score_sheet.h"
 
+#include <oneapi/tbb/blocked_range.h>
+#include <oneapi/tbb/parallel_reduce.h>
+
 #include <algorithm>
+#include <limits>
 #include <nlohmann/json.hpp>
 #include <utility>
 
@@ -25,13 +29,29 @@ double excess(const MaskSource& masks, const JobHeader& header,
   return counts.excess();
 }
 
+MaskRegions regions_of(const MaskSource& masks) {
+  return oneapi::tbb::parallel_reduce(
+      oneapi::tbb::blocked_range<int>(0, masks.size_px[2]), MaskRegions{},
+      [&](const oneapi::tbb::blocked_range<int>& layers, MaskRegions sum) {
+        for (int k = layers.begin(); k < layers.end(); ++k) sum += mask_regions(masks.read(k));
+        return sum;
+      },
+      [](MaskRegions a, const MaskRegions& b) { return a += b; });
+}
+
+// Null if there is none.
+nlohmann::ordered_json to_json(std::int64_t least_px) {
+  if (least_px == std::numeric_limits<std::int64_t>::max()) return nullptr;
+  return least_px;
+}
+
 }  // namespace
 
 ScoreSheet score_masks(const MaskSource& masks, const JobHeader& header,
                        const std::shared_ptr<const Mesh>& target,
                        const std::vector<PrinterModel>& models, const std::string& label,
                        const Console& console, const ScoreListener& listener) {
-  ScoreSheet sheet{Score(header.grid, masks.first)};
+  ScoreSheet sheet{Score(header.grid, masks.first), 0, 0, regions_of(masks)};
   const auto layers =
       score_layers(voxelize(target, header.grid, header.box, masks.layers()),
                    printed_stream(masks, models.front()), header.grid, masks.layers());
@@ -96,7 +116,11 @@ nlohmann::ordered_json to_json(const ScoreSheet& sheet) {
           {"epe_mm", {{"mean", edges.mean_mm()}, {"p95", edges.p95_mm()}, {"max", edges.max_mm()}}},
           {"lost", sheet.score.lost()},
           {"fused", sheet.score.fused()},
-          {"spurious", sheet.score.spurious()}};
+          {"spurious", sheet.score.spurious()},
+          {"separated", sheet.score.separated()},
+          {"mask",
+           {{"least_island_px", to_json(sheet.masks.least_island_px)},
+            {"least_hole_px", to_json(sheet.masks.least_hole_px)}}}};
 }
 
 }  // namespace binderjet

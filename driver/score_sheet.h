@@ -12,6 +12,7 @@
 #include "driver/console.h"
 #include "driver/mask_source.h"
 #include "slicer/effects/model.h"
+#include "slicer/mask_regions.h"
 #include "slicer/mesh/mesh.h"
 #include "slicer/score_stream.h"
 
@@ -21,6 +22,7 @@ struct ScoreSheet {
   Score score;
   double window_mean = 0;  // excess, over the model and the corners of its window
   double window_worst = 0;
+  MaskRegions masks;
 };
 
 // Hears of the layers from the first on, a block at a time, with the features that end there; then

@@ -52,17 +52,18 @@ std::string text_of(const ScoreSheet& sheet) {
       "wrong {:.4f} of {} solid voxels, {:.4f} of it unavoidable at this layer height, "
       "excess {:.4f}\nif the printer is a little off: excess {:.4f} on average, at worst {:.4f}\n"
       "edges off by {:.3f} mm on average, 95 % by less than {:.3f} mm, "
-      "at most {:.3f} mm\nfeatures: {} lost, {} fused, {} spurious",
+      "at most {:.3f} mm\nfeatures: {} lost, {} fused, {} spurious; "
+      "{} parts come out in several pieces",
       counts.wrong(), counts.solid, counts.floor(), counts.excess(), sheet.window_mean,
       sheet.window_worst, edges.mean_mm(), edges.p95_mm(), edges.max_mm(), sheet.score.lost(),
-      sheet.score.fused(), sheet.score.spurious());
+      sheet.score.fused(), sheet.score.spurious(), sheet.score.separated());
 }
 
 std::string table_row(const std::string& enhance, const ScoreSheet& sheet) {
-  return fmt::format("\n{:8} {:7.4f} {:7.4f} {:7.4f} {:8.3f} {:5} {:5} {:8}", enhance,
+  return fmt::format("\n{:8} {:7.4f} {:7.4f} {:7.4f} {:8.3f} {:5} {:5} {:8} {:9}", enhance,
                      sheet.score.voxels().excess(), sheet.window_mean, sheet.window_worst,
                      sheet.score.edges().mean_mm(), sheet.score.lost(), sheet.score.fused(),
-                     sheet.score.spurious());
+                     sheet.score.spurious(), sheet.score.separated());
 }
 
 void score(const ScoreOptions& options, const Console& console) {
@@ -91,7 +92,7 @@ void score(const ScoreOptions& options, const Console& console) {
   nlohmann::ordered_json json = to_json(own);
   std::string text = text_of(own);
   if (options.compare) {
-    text += "\n\nmasks     excess    mean   worst  edge mm  lost fused spurious";
+    text += "\n\nmasks     excess    mean   worst  edge mm  lost fused spurious separated";
     for (const std::string enhance : {"none", "paper", "inverse"}) {
       const MaskSource masks = enhanced_masks(job, target, profile, enhance, console);
       const ScoreSheet sheet =

@@ -8,6 +8,7 @@
 #include <tuple>
 
 #include "slicer/density.h"
+#include "slicer/shifted_mask.h"
 
 namespace binderjet {
 namespace {
@@ -54,13 +55,6 @@ void add_ramps(const RunLayer& mask, int y, std::array<int, 2> repeat, const Ker
   }
 }
 
-// Places of shifted flips and rows are whole numbers of 1 / kFine voxels, and a ramp between two
-// voxels is shared by them: the dose is interpolated, and its sums stay integers.
-constexpr int kFine = 16;
-
-int fine(double vx) { return static_cast<int>(std::lround(vx * kFine)); }
-int floor_div(int a, int b) { return a / b - (a % b < 0 ? 1 : 0); }
-
 // The same as add_ramps() for a mask that is shifted; every weight is kFine * kFine times as large.
 class ShiftedRamps {
  public:
@@ -69,48 +63,32 @@ class ShiftedRamps {
 
   void add(const RunLayer& mask, int y, int layer, const Kernel& along_y, std::int64_t scale,
            std::size_t kernel, std::vector<Ramp>& ramps) const {
+    const ShiftedMask shifted(grid_, place_, placed_, mask.width(), layer);
     const int ry = grid_.detail_vx[1];
-    const int most = static_cast<int>(std::ceil(most_mm() / grid_.voxel_mm(1))) + 1;
-    const int first = std::max(0, floor_div(y - along_y.last() - most, ry));
+    const int most = placed_.most_shift_vx(grid_, 1) + 1;
+    const int first = std::max(0, (y - along_y.last() - most) / ry - 1);
     const int last = std::min(mask.height() - 1, (y - along_y.first + most) / ry);
     for (int row = first; row <= last; ++row) {
       const std::span<const int> flips = mask.row(row);
       if (flips.empty()) continue;
-      const double middle = (row + 0.5) * ry - 0.5;
-      const Spot spot =
-          spot_at(grid_, place_, grid_.detail_vx[0] * mask.width() / 2.0, middle, layer);
-      const int shift = fine(placed_.shift_at(spot)[1] / grid_.voxel_mm(1));
+      const ShiftedMask::Row place = shifted.row(row);
       std::int64_t weight = 0;
       for (int voxel_row = row * ry; voxel_row < (row + 1) * ry; ++voxel_row) {
-        const int offset = (y - voxel_row) * kFine - shift;
-        const int whole = floor_div(offset, kFine);
-        const int part = offset - whole * kFine;
+        const auto [whole, part] = split_fine((y - voxel_row) * kFine - place.shift);
         weight += (kFine - part) * along_y.at(whole) + part * along_y.at(whole + 1);
       }
-      if (weight != 0) add_row(flips, spot, weight * scale, kernel, ramps);
+      if (weight == 0) continue;
+      weight *= scale;
+      for (const int flip : flips) {
+        const auto [at, part] = split_fine(shifted.edge(place, flip));
+        ramps.push_back({at, kernel, weight * (kFine - part)});
+        if (part != 0) ramps.push_back({at + 1, kernel, weight * part});
+        weight = -weight;
+      }
     }
   }
 
  private:
-  double most_mm() const {
-    double sum = 0;
-    for (const MaskShift& shift : placed_.shifts) sum += shift.most_mm;
-    return sum;
-  }
-  void add_row(std::span<const int> flips, Spot spot, std::int64_t weight, std::size_t kernel,
-               std::vector<Ramp>& ramps) const {
-    const double voxel_mm = grid_.voxel_mm(0);
-    for (const int flip : flips) {
-      spot.x_mm = place_.origin_mm[0] + flip * grid_.pitch_mm[0];
-      const int at = fine(flip * grid_.detail_vx[0] + placed_.shift_at(spot)[0] / voxel_mm);
-      const int whole = floor_div(at, kFine);
-      const int part = at - whole * kFine;
-      ramps.push_back({whole, kernel, weight * (kFine - part)});
-      if (part != 0) ramps.push_back({whole + 1, kernel, weight * part});
-      weight = -weight;
-    }
-  }
-
   const Grid& grid_;
   const JobPlace& place_;
   const PlacedDose& placed_;
@@ -129,9 +107,7 @@ class RowGain {
   }
   void at_row(int y) { y_ = y; }
   double operator()(int x) const {
-    Spot spot = spot_at(grid_, place_, x, y_, layer_);
-    if (density_ != nullptr) spot.density = density_->at(x, y_);
-    return placed_.gain_at(spot);
+    return gain_at_voxel(grid_, place_, placed_, density_, x, y_, layer_);
   }
   bool none() const { return placed_.gains.empty(); }
   double most() const { return most_; }
@@ -264,13 +240,7 @@ RunLayer DoseFilter::operator()(std::span<const RunLayer* const> window, int lay
   const int height = mask.height() * repeat_[1];
   RunLayer out(mask.width() * repeat_[0]);
   out.reserve(height, mask.flip_count() * static_cast<std::size_t>(repeat_[1]));
-  std::optional<DensityField> density;
-  if (placed_.density_radius_mm) {
-    const int reach = placed_.density_layers(grid_);
-    density.emplace(window.subspan(static_cast<std::size_t>(middle - reach),
-                                   2 * static_cast<std::size_t>(reach) + 1),
-                    grid_, *placed_.density_radius_mm);
-  }
+  const std::optional<DensityField> density = density_of(window, grid_, placed_);
   RowGain gain(grid_, place_, placed_, layer, density ? &*density : nullptr);
   RowBuilder builder(out, x_, least_, gain);
   const ShiftedRamps shifted(grid_, place_, placed_);

@@ -90,8 +90,9 @@ std::unique_ptr<Stream<MaskLayer>> inverse_masks(TargetFrom target_from, LayerRa
                                                  int job_layers,
                                                  std::shared_ptr<const InverseSolver> solver) {
   const int turns = solver->stride();
-  const int improving = turns * (turns == 1 ? 1 : 2);
-  const int steps = improving + 3 * turns;
+  const int improving = turns * (turns == 1 && !solver->follows_density() ? 1 : 2);
+  const int searching = improving + 3 * turns;
+  const int steps = searching + 1;
   const auto range_with = [&](int steps_left) {
     return grown(layers, steps_left * solver->reach(), job_layers);
   };
@@ -104,7 +105,8 @@ std::unique_ptr<Stream<MaskLayer>> inverse_masks(TargetFrom target_from, LayerRa
   for (int step = 0; step < steps; ++step) {
     improved = std::make_unique<Improve>(
         std::move(improved), range_with(steps - step - 1), solver->reach(), job_layers,
-        [solver, step, turns, improving](int layer, Improve::Window window) {
+        [=](int layer, Improve::Window window) {
+          if (step == searching) return solver->settle(window);
           if (layer % turns != step % turns) return *window[window.size() / 2];
           return step < improving ? solver->improve(window, step < turns) : solver->rescue(window);
         });

@@ -41,9 +41,10 @@ std::unique_ptr<Stream<MaskLayer>> paper_masks(TargetFrom target_from, const Gri
                                                int passes);
 
 // The masks that print nearest to the target (slicer/enhance/inverse.h). A model whose binder
-// crosses layers takes turns: layers that share no print are improved together, twice over. Then
-// layers in which features vanish are searched again, three times, with their neighbours' prints
-// known.
+// crosses layers takes turns: layers that share no print are improved together, twice over; so does
+// one whose gains follow the masks' density. Then layers in which features vanish are searched
+// again, three times, with their neighbours' prints known; at last what still prints where no part
+// is goes.
 std::unique_ptr<Stream<MaskLayer>> inverse_masks(TargetFrom target_from, LayerRange layers,
                                                  int job_layers,
                                                  std::shared_ptr<const InverseSolver> solver);

@@ -7,8 +7,10 @@
 #include <array>
 #include <functional>
 #include <optional>
+#include <span>
 #include <vector>
 
+#include "slicer/density.h"
 #include "slicer/grid.h"
 
 namespace binderjet {
@@ -54,6 +56,12 @@ struct PlacedDose {
     }
     return sum;
   }
+  // No mask is shifted by more voxels than this.
+  int most_shift_vx(const Grid& grid, int axis) const {
+    double sum = 0;
+    for (const MaskShift& shift : shifts) sum += shift.most_mm;
+    return pixels_for(sum, grid.voxel_mm(axis));
+  }
   int density_layers(const Grid& grid) const {
     return density_radius_mm ? pixels_for(*density_radius_mm, grid.pitch_mm[2]) : 0;
   }
@@ -71,6 +79,26 @@ inline Spot spot_at(const Grid& grid, const JobPlace& place, double x_vx, double
   return {place.origin_mm[0] + (x_vx + 0.5) * grid.voxel_mm(0),
           place.origin_mm[1] + (y_vx + 0.5) * grid.voxel_mm(1), (layer + 0.5) * grid.pitch_mm[2],
           layer, 0};
+}
+
+// Of the middle layer of a window of masks (null is powder) that reaches at least
+// placed.density_layers(); none if no effect asks for it.
+inline std::optional<DensityField> density_of(std::span<const RunLayer* const> window,
+                                              const Grid& grid, const PlacedDose& placed) {
+  if (!placed.density_radius_mm) return std::nullopt;
+  const auto middle = window.size() / 2;
+  const auto reach = static_cast<std::size_t>(placed.density_layers(grid));
+  return DensityField(window.subspan(middle - reach, 2 * reach + 1), grid,
+                      *placed.density_radius_mm);
+}
+
+// By what the dose of voxel (x, y) of a layer is multiplied; `density` may be null if no effect
+// asks for it.
+inline double gain_at_voxel(const Grid& grid, const JobPlace& place, const PlacedDose& placed,
+                            const DensityField* density, int x_vx, int y_vx, int layer) {
+  Spot spot = spot_at(grid, place, x_vx, y_vx, layer);
+  if (density != nullptr) spot.density = density->at(x_vx, y_vx);
+  return placed.gain_at(spot);
 }
 
 }  // namespace binderjet

@@ -88,6 +88,7 @@ std::vector<Feature> Score::add(const LayerScore& layer) {
   for (const RunLayer& slice : layer.features.fused) {
     take(FeatureKind::kFused, fused_regions_.add(slice), ended);
   }
+  pieces_.add(*layer.layer.target, *layer.layer.printed);
   const RunLayer wanted = any_slice(*layer.layer.target);
   take(FeatureKind::kSpurious, printed_regions_.add(*layer.layer.printed, &wanted), ended);
   return ended;
@@ -98,6 +99,7 @@ std::vector<Feature> Score::finish() {
   take(FeatureKind::kLost, lost_regions_.finish(), ended);
   take(FeatureKind::kFused, fused_regions_.finish(), ended);
   take(FeatureKind::kSpurious, printed_regions_.finish(), ended);
+  separated_ = pieces_.separated();
   return ended;
 }
 

@@ -9,6 +9,7 @@
 #include "slicer/edge_error.h"
 #include "slicer/features.h"
 #include "slicer/grid.h"
+#include "slicer/pieces.h"
 #include "slicer/regions.h"
 #include "slicer/score.h"
 #include "slicer/stream.h"
@@ -52,6 +53,8 @@ class Score {
   std::int64_t lost() const { return lost_; }
   std::int64_t fused() const { return fused_; }
   std::int64_t spurious() const { return spurious_; }
+  // Connected regions of the target that come out in several pieces.
+  std::int64_t separated() const { return separated_; }
 
  private:
   void take(FeatureKind kind, const std::vector<Region>& regions, std::vector<Feature>& out);
@@ -65,6 +68,8 @@ class Score {
   std::int64_t lost_ = 0;
   std::int64_t fused_ = 0;
   std::int64_t spurious_ = 0;
+  PieceCounter pieces_;
+  std::int64_t separated_ = 0;
 };
 
 }  // namespace binderjet

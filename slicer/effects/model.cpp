@@ -51,10 +51,8 @@ Reach ModelForm::reach(const Grid& grid) const {
   for (const std::array<int, 2>& box : survive_vx) {
     for (std::size_t axis = 0; axis < 2; ++axis) reach.xy_vx[axis] += box[axis] - 1;
   }
-  for (const MaskShift& shift : placed.shifts) {
-    for (int axis = 0; axis < 2; ++axis) {
-      reach.xy_vx[static_cast<std::size_t>(axis)] += pixels_for(shift.most_mm, grid.voxel_mm(axis));
-    }
+  for (int axis = 0; axis < 2 && !placed.shifts.empty(); ++axis) {
+    reach.xy_vx[static_cast<std::size_t>(axis)] += placed.most_shift_vx(grid, axis);
   }
   reach.layers_below = std::max(reach.layers_below, placed.density_layers(grid));
   reach.layers_above = std::max(reach.layers_above, placed.density_layers(grid));
@@ -69,6 +67,7 @@ PrinterModel::PrinterModel(ModelForm form, const Grid& grid, const JobPlace& pla
     : repeat_{grid.detail_vx[0], grid.detail_vx[1]},
       form_(std::move(form)),
       reach_(form_.reach(grid)) {
+  form_.place = place;
   if (form_.level <= 0) {
     throw Error(ErrorKind::kBadInput, "effects",
                 "nothing binds powder: the model needs a threshold or a fill");

@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <numeric>
 #include <optional>
+#include <span>
 #include <utility>
 
 #include "slicer/enhance/spurious.h"
@@ -25,10 +26,10 @@ std::vector<StampedModel> weighted(const std::vector<PrinterModel>& models, cons
   return stamped(models, weights, grid);
 }
 
-double wanted_share(const ModelForm& form) {
+double level_share(const ModelForm& form) {
   double gains = 0;
   for (const DoseTerm& term : form.terms) gains += term.gain;
-  return 1 - form.level / gains;
+  return form.level / gains;
 }
 
 std::int64_t wrong(const InverseLayer& layer, const RunLayer& printed) {
@@ -36,10 +37,39 @@ std::int64_t wrong(const InverseLayer& layer, const RunLayer& printed) {
   return counts.missing + counts.extra;
 }
 
-std::int64_t voxels(const LayerFeatures& features) {
+using FaultsByOffset = std::map<int, Shared<LayerFaults>>;
+
+std::int64_t voxels(const FaultsByOffset& faults) {
   std::int64_t sum = 0;
-  for (const RunLayer& slice : features.lost) sum += slice.count();
-  for (const RunLayer& slice : features.fused) sum += slice.count();
+  for (const auto& [offset, of] : faults) {
+    for (const RunLayer& slice : of->gone.lost) sum += slice.count();
+    for (const RunLayer& slice : of->gone.fused) sum += slice.count();
+    sum += of->barren.count();
+  }
+  return sum;
+}
+
+// The pixels of each run of voxels and so many on each side.
+std::vector<Rect> pixels_around(const RunLayer& voxels, const Grid& grid, int around_px) {
+  const auto [rx, ry, rz] = grid.detail_vx;
+  std::vector<Rect> out;
+  for (int y = 0; y < voxels.height(); ++y) {
+    const rows::Row row = voxels.row(y);
+    for (std::size_t i = 0; i < row.size(); i += 2) {
+      const Rect run{row[i] / rx, y / ry, (row[i + 1] - 1) / rx + 1, y / ry + 1};
+      out.push_back(run.grown(around_px, around_px));
+    }
+  }
+  return out;
+}
+
+RunLayer united(const RunLayer& a, const RunLayer& b) {
+  RunLayer sum(a.width());
+  std::vector<int> row;
+  for (int y = 0; y < a.height(); ++y) {
+    rows::unite(a.row(y), b.row(y), row);
+    sum.append_row(row);
+  }
   return sum;
 }
 
@@ -47,8 +77,12 @@ std::int64_t voxels(const LayerFeatures& features) {
 
 InverseSolver::InverseSolver(std::vector<PrinterModel> window, const Grid& grid,
                              const MaskRules& rules)
-    : model_(window.front()),
-      search_{weighted(window, grid), offsets_of(model_.form()), wanted_share(model_.form()), rules,
+    : window_(window),
+      search_{window.front(),
+              weighted(window, grid),
+              offsets_of(window.front().form()),
+              level_share(window.front().form()),
+              rules,
               grid} {
   const std::set<int>& printed = search_.offsets.printed;
   stride_ = *printed.rbegin() - *printed.begin() + 1;
@@ -80,18 +114,65 @@ InverseLayer InverseSolver::improve(LayerWindow layers, bool anew) const {
 
 InverseLayer InverseSolver::rescue(LayerWindow layers) const {
   InverseLayer out = *layer_at(layers, 0);
-  auto gone = std::make_shared<const LayerFeatures>(vanished(layers, *out.mask));
-  if (voxels(*gone) == 0) return out;
-  out.stressed.push_back(gone);
+  const FaultsByOffset before = all_faults(layers, *out.mask);
+  if (voxels(before) == 0) return out;
+  if (before.contains(0)) out.stressed.push_back(before.at(0));
   std::vector<Shared<InverseLayer>> with_stress(layers.begin(), layers.end());
-  with_stress[layers.size() / 2] = std::make_shared<const InverseLayer>(out);
+  std::vector<const RunLayer*> places;
+  for (const auto& [offset, faults] : before) {
+    InverseLayer layer = *layer_at(layers, offset);
+    layer.stressed.push_back(faults);
+    const auto middle = static_cast<std::ptrdiff_t>(layers.size() / 2);
+    with_stress[static_cast<std::size_t>(middle + offset)] =
+        std::make_shared<const InverseLayer>(std::move(layer));
+    for (const RunLayer& slice : faults->gone.lost) places.push_back(&slice);
+    for (const RunLayer& slice : faults->gone.fused) places.push_back(&slice);
+    places.push_back(&faults->barren);
+  }
   LayerSearch search(search_, with_stress);
-  search.run_near(*gone);
+  search.run_near(places);
   auto mask = std::make_shared<const RunLayer>(search.mask());
-  if (voxels(vanished(layers, *mask)) < voxels(*gone) && acceptable(layers, *mask)) {
+  if (voxels(all_faults(layers, *mask)) < voxels(before) && acceptable(layers, *mask)) {
     out.mask = std::move(mask);
   }
   return out;
+}
+
+InverseLayer InverseSolver::settle(LayerWindow layers) const {
+  InverseLayer out = *layer_at(layers, 0);
+  out.mask = without_spurious(layers);
+  const bool worse = wrong(out, print_with(layers, 0, search_.printer, *out.mask)) >
+                     wrong(out, print_plain(layers, 0, search_.printer));
+  if (worse) out.mask = plain(out.number, out.target).mask;
+  return out;
+}
+
+// Only the plain mask's pixels stay around what is printed where no part is, further and further
+// until nothing is.
+Shared<RunLayer> InverseSolver::without_spurious(LayerWindow layers) const {
+  const InverseLayer& layer = *layer_at(layers, 0);
+  Shared<RunLayer> mask = layer.mask;
+  const Rect box{0, 0, mask->width(), mask->height()};
+  constexpr int kMostPx = 32;
+  for (int around_px = 2; around_px <= kMostPx; around_px *= 2) {
+    const RunLayer spurious =
+        spurious_print(*layer.target, print_with(layers, 0, search_.printer, *mask));
+    if (spurious.count() == 0) break;
+    Plane<std::uint8_t> plain(box);
+    add_layer(*layer.plain, std::uint8_t{1}, plain);
+    const int most = search_.rules.most();
+    Plane<std::uint8_t> pixels(box.grown(most, most));
+    add_layer(*mask, std::uint8_t{1}, pixels);
+    for (const Rect& near : pixels_around(spurious, search_.grid, around_px)) {
+      const Rect rect = near.cut(box);
+      for (int y = rect.y0; y < rect.y1; ++y) {
+        for (int x = rect.x0; x < rect.x1; ++x) *pixels.at(x, y) &= *plain.at(x, y);
+      }
+    }
+    obey(search_.rules, box, pixels);
+    mask = std::make_shared<const RunLayer>(to_layer(pixels, box.x1, box.y1));
+  }
+  return mask;
 }
 
 PixelReasons InverseSolver::reasons(LayerWindow layers, int x, int y) const {
@@ -99,7 +180,8 @@ PixelReasons InverseSolver::reasons(LayerWindow layers, int x, int y) const {
   const Rect pixel{x, y, x + 1, y + 1};
   const Rect voxels{x * rx, y * ry, (x + 1) * rx, (y + 1) * ry};
   Plane<std::uint8_t> mask;
-  TileSurroundings around(layers, search_.offsets, mask);
+  const WindowPlaces places(search_.printer, search_.grid, layers, search_.offsets);
+  TileSurroundings around(layers, search_.offsets, places, mask);
   LocalDose dose(search_.models, search_.grid, pixel, around);
   mask.reset(dose.mask_rect().grown(search_.rules.most(), search_.rules.most()), 0);
   add_layer(*layer_at(layers, 0)->mask, std::uint8_t{1}, mask);
@@ -110,7 +192,7 @@ PixelReasons InverseSolver::reasons(LayerWindow layers, int x, int y) const {
   std::uint8_t& state = *mask.at(x, y);
   const int sign = state != 0 ? -1 : 1;
   why.on = state != 0;
-  why.level = model_.form().level;
+  why.level = search_.printer.form().level;
   Plane<int> solid(voxels);
   for (const RunLayer& slice : layer_at(layers, 0)->target->slices) add_layer(slice, 1, solid);
   const auto doses = [&] {
@@ -137,38 +219,42 @@ bool InverseSolver::acceptable(LayerWindow layers, const RunLayer& mask) const {
   return std::all_of(printed.begin(), printed.end(), [&](int offset) {
     const InverseLayer* layer = layer_at(layers, offset);
     if (layer == nullptr) return true;
-    const std::int64_t now = wrong(*layer, print_with(layers, offset, model_, mask));
-    if (now <= wrong(*layer, print_plain(layers, offset, model_))) return true;
+    const std::int64_t now = wrong(*layer, print_with(layers, offset, search_.printer, mask));
+    if (now <= wrong(*layer, print_plain(layers, offset, search_.printer))) return true;
     const RunLayer& before = *layer_at(layers, 0)->mask;
-    return now <= wrong(*layer, print_with(layers, offset, model_, before));
+    return now <= wrong(*layer, print_with(layers, offset, search_.printer, before));
   });
 }
 
-// Lost and fused voxels of the middle layer with this mask, as `score` finds them; what is printed
-// where no part is counts as fused.
-LayerFeatures InverseSolver::vanished(LayerWindow layers, const RunLayer& mask) const {
+// As `score` finds them.
+LayerFaults InverseSolver::faults(LayerWindow layers, int offset, const RunLayer& mask) const {
   std::array<std::optional<ComparedLayer>, 3> compared;
   std::array<const ComparedLayer*, 3> seen{};
-  for (int offset = -1; offset <= 1; ++offset) {
-    const InverseLayer* layer = layer_at(layers, offset);
+  for (int near = -1; near <= 1; ++near) {
+    const InverseLayer* layer = layer_at(layers, offset + near);
     if (layer == nullptr) continue;
-    const auto at = static_cast<std::size_t>(offset + 1);
-    compared[at] = ComparedLayer{
-        layer->target, std::make_shared<const RunLayer>(print_with(layers, offset, model_, mask))};
+    const auto at = static_cast<std::size_t>(near + 1);
+    compared[at] = ComparedLayer{layer->target, std::make_shared<const RunLayer>(print_with(
+                                                    layers, offset + near, search_.printer, mask))};
     seen[at] = &*compared[at];
   }
-  LayerFeatures gone = find_features(seen[0], *seen[1], seen[2], search_.grid);
-  const RunLayer spurious = spurious_print(*seen[1]->target, *seen[1]->printed);
-  std::vector<int> both;
-  for (RunLayer& slice : gone.fused) {
-    RunLayer sum(slice.width());
-    for (int y = 0; y < slice.height(); ++y) {
-      rows::unite(slice.row(y), spurious.row(y), both);
-      sum.append_row(both);
-    }
-    slice = std::move(sum);
+  const VoxelLayer& target = *seen[1]->target;
+  LayerFaults out{find_features(seen[0], *seen[1], seen[2], search_.grid),
+                  spurious_print(target, *seen[1]->printed)};
+  for (const PrinterModel& model : std::span(window_).subspan(1)) {
+    const RunLayer more = spurious_print(target, print_with(layers, offset, model, mask));
+    if (more.count() > 0) out.barren = united(out.barren, more);
   }
-  return gone;
+  return out;
+}
+
+FaultsByOffset InverseSolver::all_faults(LayerWindow layers, const RunLayer& mask) const {
+  FaultsByOffset out;
+  for (const int offset : search_.offsets.printed) {
+    if (layer_at(layers, offset) == nullptr) continue;
+    out.emplace(offset, std::make_shared<const LayerFaults>(faults(layers, offset, mask)));
+  }
+  return out;
 }
 
 }  // namespace binderjet

@@ -9,6 +9,7 @@
 #pragma once
 
 #include <algorithm>
+#include <map>
 #include <memory>
 #include <vector>
 
@@ -39,26 +40,38 @@ class InverseSolver {
   InverseSolver(std::vector<PrinterModel> window, const Grid& grid, const MaskRules& rules);
 
   // How many layers on each side of a layer improve() and rescue() look at.
-  int reach() const { return std::max(2, 2 * model_.window_reach()); }
+  int reach() const { return std::max(2, 2 * search_.printer.window_reach() + 1); }
   // Layers so many apart (or a multiple) print into no common layer, so all of them may be improved
   // at once and none spoils what another one saw.
   int stride() const { return stride_; }
+  // Whether a layer's print also depends on other layers' masks through their density, which a
+  // search takes as it is: then layers are to be improved again.
+  bool follows_density() const {
+    return search_.printer.form().placed.density_radius_mm.has_value();
+  }
 
   // Layer `number` of the job with its plain mask, or what the rules leave of it.
   InverseLayer plain(int number, Shared<VoxelLayer> target) const;
   // The middle layer with a better mask; `anew` forgets its mask so far. No layer prints worse than
   // with plain masks, unless it did before (nominal model, wrong voxels).
   InverseLayer improve(LayerWindow layers, bool anew) const;
-  // The same with fewer voxels of lost and fused features (slicer/features.h), if there are any.
+  // The same with fewer voxels of lost and fused features (slicer/features.h), and of what is
+  // printed where no part is, if there are any.
   InverseLayer rescue(LayerWindow layers) const;
+  // The middle layer without what prints where no part is, if anything still does once the others
+  // are as they are; with its plain mask again if its print is worse than plain.
+  InverseLayer settle(LayerWindow layers) const;
   // Of pixel (x, y) of the middle layer, its mask so far.
   PixelReasons reasons(LayerWindow layers, int x, int y) const;
 
  private:
   bool acceptable(LayerWindow layers, const RunLayer& mask) const;
-  LayerFeatures vanished(LayerWindow layers, const RunLayer& mask) const;
+  Shared<RunLayer> without_spurious(LayerWindow layers) const;
+  LayerFaults faults(LayerWindow layers, int offset, const RunLayer& mask) const;
+  // Of all layers whose print the middle one's mask changes, by offset.
+  std::map<int, Shared<LayerFaults>> all_faults(LayerWindow layers, const RunLayer& mask) const;
 
-  PrinterModel model_;
+  std::vector<PrinterModel> window_;
   SearchModel search_;
   int stride_ = 1;
 };

@@ -7,13 +7,19 @@ namespace binderjet {
 namespace {
 
 template <class MaskOf>
-RunLayer print(LayerWindow layers, int offset, const PrinterModel& model, MaskOf mask_of) {
+std::vector<const RunLayer*> gather(LayerWindow layers, int offset, const PrinterModel& model,
+                                    MaskOf mask_of) {
   std::vector<const RunLayer*> masks;
   for (int near = offset - model.window_reach(); near <= offset + model.window_reach(); ++near) {
     const InverseLayer* layer = layer_at(layers, near);
     masks.push_back(layer == nullptr ? nullptr : mask_of(*layer, near));
   }
-  return model.print(masks, layer_at(layers, 0)->number + offset);
+  return masks;
+}
+
+template <class MaskOf>
+RunLayer print(LayerWindow layers, int offset, const PrinterModel& model, MaskOf mask_of) {
+  return model.print(gather(layers, offset, model, mask_of), layer_at(layers, 0)->number + offset);
 }
 
 }  // namespace
@@ -32,6 +38,12 @@ ModelOffsets offsets_of(const ModelForm& form) {
     for (const DoseTerm& term : form.terms) offsets.masks.insert(printed + term.layer);
   }
   return offsets;
+}
+
+std::vector<const RunLayer*> masks_around(LayerWindow layers, int offset,
+                                          const PrinterModel& model) {
+  return gather(layers, offset, model,
+                [](const InverseLayer& layer, int) { return layer.mask.get(); });
 }
 
 RunLayer print_plain(LayerWindow layers, int offset, const PrinterModel& model) {

@@ -14,13 +14,19 @@
 
 namespace binderjet {
 
+// What is wrong with a layer's print beyond single voxels.
+struct LayerFaults {
+  LayerFeatures gone;  // lost and fused, under the nominal model
+  RunLayer barren;     // printed where no part is, under any model of the window
+};
+
 // Shared, for most steps change one of its parts only.
 struct InverseLayer {
   Shared<VoxelLayer> target;
   Shared<RunLayer> plain;  // its mask without enhancement
   Shared<RunLayer> mask;   // its mask so far; obeys the rules
-  // Features that have vanished from its print before and shall not again.
-  std::vector<Shared<LayerFeatures>> stressed;
+  // Faults that its print has had before and shall not have again.
+  std::vector<Shared<LayerFaults>> stressed;
   int number = 0;  // in the job, from 0 on the bed
 };
 
@@ -37,6 +43,10 @@ struct ModelOffsets {
   std::set<int> masks;
 };
 ModelOffsets offsets_of(const ModelForm& form);
+
+// The masks so far that the model wants to see for the layer at `offset`.
+std::vector<const RunLayer*> masks_around(LayerWindow layers, int offset,
+                                          const PrinterModel& model);
 
 // What becomes of the layer at `offset`, which must be there: with the plain masks, and with those
 // so far but `own` for the middle layer.

@@ -6,8 +6,8 @@
 #include <map>
 #include <utility>
 
-#include "slicer/enhance/active_tiles.h"
 #include "slicer/enhance/change_count.h"
+#include "slicer/enhance/search_tiles.h"
 #include "slicer/enhance/tile_surroundings.h"
 #include "slicer/rows.h"
 
@@ -33,13 +33,11 @@ PixelSight look(const LocalDose& dose, const Surroundings& around,
   return sight.least_cost < 0 && sight.most_cost > 0 ? dose.sight(x, y) : sight;
 }
 
-bool meet(const std::vector<RunLayer>& slices, const Rect& rect) {
-  for (const RunLayer& slice : slices) {
-    for (int y = rect.y0; y < rect.y1; ++y) {
-      const rows::Row row = slice.row(y);
-      for (std::size_t i = 0; i < row.size(); i += 2) {
-        if (row[i] < rect.x1 && row[i + 1] > rect.x0) return true;
-      }
+bool meets(const RunLayer& layer, const Rect& rect) {
+  for (int y = rect.y0; y < rect.y1; ++y) {
+    const rows::Row row = layer.row(y);
+    for (std::size_t i = 0; i < row.size(); i += 2) {
+      if (row[i] < rect.x1 && row[i + 1] > rect.x0) return true;
     }
   }
   return false;
@@ -47,10 +45,11 @@ bool meet(const std::vector<RunLayer>& slices, const Rect& rect) {
 
 }  // namespace
 
-LayerSearch::LayerSearch(const SearchModel& by, LayerWindow layers) : by_(by), layers_(layers) {
+LayerSearch::LayerSearch(const SearchModel& by, LayerWindow layers)
+    : by_(by), layers_(layers), places_(by.printer, by.grid, layers, by.offsets) {
   const RunLayer& before = *layer_at(layers, 0)->mask;
   box_ = {0, 0, before.width(), before.height()};
-  const TileSurroundings nothing(layers_, by_.offsets, mask_);
+  const TileSurroundings nothing(layers_, by_.offsets, places_, mask_);
   const LocalDose one(by_.models, by_.grid, {0, 0, 1, 1}, nothing);
   reach_vx_ = one.voxel_rect();
   // Tiles at the box's edge ask for the mask beyond it.
@@ -72,21 +71,22 @@ void LayerSearch::find_tiles() {
   }
   const std::array<int, 2> reach{std::max(-reach_vx_.x0, reach_vx_.x1),
                                  std::max(-reach_vx_.y0, reach_vx_.y1)};
-  for (const Rect& rect : active_tiles(slices, by_.grid, reach)) {
+  for (const Rect& rect : search_tiles(slices, by_.grid, reach)) {
     tiles_.push_back({rect.grown(kOverlapPx, kOverlapPx).cut(box_), {}});
   }
 }
 
 void LayerSearch::run(bool anew) { search(tiles_, anew); }
 
-void LayerSearch::run_near(const LayerFeatures& features) {
+void LayerSearch::run_near(std::span<const RunLayer* const> places) {
   std::vector<Tile> near;
   for (const Tile& tile : tiles_) {
     const std::array<int, 2> r{by_.grid.detail_vx[0], by_.grid.detail_vx[1]};
     const Rect voxels{tile.rect.x0 * r[0] + reach_vx_.x0, tile.rect.y0 * r[1] + reach_vx_.y0,
                       tile.rect.x1 * r[0] + reach_vx_.x1, tile.rect.y1 * r[1] + reach_vx_.y1};
-    if (meet(features.lost, voxels) || meet(features.fused, voxels))
-      near.push_back({tile.rect, {}});
+    const bool is_near = std::any_of(places.begin(), places.end(),
+                                     [&](const RunLayer* place) { return meets(*place, voxels); });
+    if (is_near) near.push_back({tile.rect, {}});
   }
   search(near, true);
 }
@@ -94,7 +94,11 @@ void LayerSearch::run_near(const LayerFeatures& features) {
 void LayerSearch::search(std::span<Tile> tiles, bool anew) {
   for (Tile& tile : tiles) look_over(tile, anew);
   if (anew) {
-    for (const Tile& tile : tiles) obey(by_.rules, tile.rect, mask_);
+    // What a tile leaves of an island or a hole may lie beside it.
+    const int most = by_.rules.most();
+    for (const Tile& tile : tiles) {
+      obey(by_.rules, tile.rect.grown(most, most).cut(box_), mask_);
+    }
   }
   for (const Tile& tile : tiles) search(tile);
 }
@@ -102,7 +106,7 @@ void LayerSearch::search(std::span<Tile> tiles, bool anew) {
 // Finds the pixels to search on. Where all that a pixel can do is good, or all is bad, it is
 // settled; else, to begin with, it is on if a straight edge through what it reaches wants it on.
 void LayerSearch::look_over(Tile& tile, bool anew) {
-  TileSurroundings around(layers_, by_.offsets, mask_);
+  TileSurroundings around(layers_, by_.offsets, places_, mask_);
   const LocalDose dose(by_.models, by_.grid, tile.rect, around);
   around.look_at(dose);
   std::map<int, ChangeCount> changes;
@@ -113,14 +117,22 @@ void LayerSearch::look_over(Tile& tile, bool anew) {
       const PixelSight sight = look(dose, around, changes, x, y);
       const bool open = sight.least_cost < 0 && sight.most_cost > 0;
       if (open) tile.pixels.push_back({x, y});
-      if (anew) *mask_.at(x, y) = open ? sight.wanted >= by_.wanted : sight.least_cost < 0;
+      if (!anew) continue;
+      *mask_.at(x, y) = open ? sight.wanted >= wanted_at(x, y) : sight.least_cost < 0;
     }
   }
 }
 
+// A straight edge needs the pixels that have more than this share of their binder within.
+double LayerSearch::wanted_at(int x, int y) const {
+  if (!places_.has_gains()) return 1 - by_.level_share;
+  const auto [rx, ry, rz] = by_.grid.detail_vx;
+  return 1 - by_.level_share / places_.gain(0, x * rx + rx / 2, y * ry + ry / 2);
+}
+
 void LayerSearch::search(const Tile& tile) {
   if (tile.pixels.empty()) return;
-  TileSurroundings around(layers_, by_.offsets, mask_);
+  TileSurroundings around(layers_, by_.offsets, places_, mask_);
   LocalDose dose(by_.models, by_.grid, tile.rect, around);
   around.look_at(dose);
   dose.reset();

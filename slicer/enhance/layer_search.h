@@ -12,6 +12,7 @@
 #include "slicer/enhance/pixel_search.h"
 #include "slicer/enhance/plane.h"
 #include "slicer/enhance/stamp.h"
+#include "slicer/enhance/window_places.h"
 #include "slicer/features.h"
 #include "slicer/grid.h"
 
@@ -19,9 +20,10 @@ namespace binderjet {
 
 // What a search goes by; the first model is the nominal one.
 struct SearchModel {
+  PrinterModel printer;
   std::vector<StampedModel> models;
   ModelOffsets offsets;
-  double wanted = 0.5;  // a straight edge needs the pixels that have more than this share within
+  double level_share = 0.5;  // the level, of the dose that a wide field gets
   MaskRules rules;
   Grid grid;
 };
@@ -33,8 +35,8 @@ class LayerSearch {
 
   // Searches the whole layer; `anew` forgets its mask so far.
   void run(bool anew);
-  // Searches anew where pixels reach these features (of the layer, slice by slice).
-  void run_near(const LayerFeatures& features);
+  // Searches anew where pixels reach what is 1 in any of these layers, on the voxel grid.
+  void run_near(std::span<const RunLayer* const> places);
 
   RunLayer mask() const { return to_layer(mask_, box_.x1, box_.y1); }
 
@@ -47,10 +49,12 @@ class LayerSearch {
   void find_tiles();
   void search(std::span<Tile> tiles, bool anew);
   void look_over(Tile& tile, bool anew);
+  double wanted_at(int x, int y) const;
   void search(const Tile& tile);
 
   const SearchModel& by_;
   LayerWindow layers_;
+  WindowPlaces places_;
   Rect box_;
   Rect reach_vx_;  // of the pixel at (0, 0)
   Plane<std::uint8_t> mask_;

@@ -7,10 +7,13 @@
 
 #include <array>
 #include <cstdint>
+#include <map>
 #include <span>
+#include <utility>
 #include <vector>
 
 #include "slicer/enhance/plane.h"
+#include "slicer/enhance/shifted_stamps.h"
 #include "slicer/enhance/stamp.h"
 #include "slicer/grid.h"
 
@@ -25,6 +28,11 @@ class Surroundings {
   virtual const Plane<int>& cost(int layer, bool nominal) const = 0;
   // At least LocalDose::mask_rect() of the layer's mask as it is.
   virtual const Plane<std::uint8_t>& mask(int layer) const = 0;
+  // Null if no mask is shifted. Shifts are taken as at most `most_shift_vx()`.
+  virtual const ShiftedMask* shifts(int layer) const = 0;
+  virtual std::array<int, 2> most_shift_vx() const = 0;
+  // By what the dose of a voxel is multiplied; null if by 1 everywhere. As large as cost().
+  virtual const Plane<float>* gain(int layer) const = 0;
 };
 
 struct StampOverlay;  // a stamp laid on the dose; for the loops over its voxels
@@ -49,11 +57,8 @@ class LocalDose {
   // How far apart, in pixels, two pixels may be that reach the same voxel.
   std::array<int, 2> pixel_reach() const;
 
-  // The voxels that pixel (x, y) may have binder for.
-  Rect voxels_of(int x, int y) const {
-    return {x * repeat_[0] + first_[0], y * repeat_[1] + first_[1], x * repeat_[0] + last_[0],
-            y * repeat_[1] + last_[1]};
-  }
+  // The voxels that pixel (x, y) of the tile may have binder for.
+  Rect voxels_of(int x, int y) const;
   PixelSight sight(int x, int y) const;
 
   // Computes the doses from the masks as they are. Before it sight() is all there is.
@@ -68,28 +73,49 @@ class LocalDose {
   double dose(int x_vx, int y_vx) const;
 
  private:
+  // Where a pixel of the tile lands, from its first voxel, and the stamps that fit it.
+  struct Landing {
+    std::array<int, 2> by{};
+    std::size_t fit = 0;
+  };
   // The dose of one layer under one model.
   struct Field {
     const StampedModel* model;
-    const Stamp* stamp;  // of a flip
+    const Stamp* stamp;                // of a flip that is not shifted
+    std::vector<const Stamp*> fitted;  // by Landing::fit
     Plane<int> dose;
     bool nominal;
   };
   const Plane<int>& cost(const Field& field) const {
     return around_.cost(-field.stamp->layer, field.nominal);
   }
+  ShiftedStamps& shifted(const StampedModel& model, int layer);
+  void land(const Rect& tile);
+  void add_fit(const PixelFit* fit);
+  void find_reach();
+  int within_most(int shift, std::size_t axis) const;
+  Rect landed(const Landing& landing) const;
+  void add_mask(const Stamp& stamp, const Plane<std::uint8_t>& mask, Field& field) const;
+  void add_shifted_mask(const Stamp& stamp, const Plane<std::uint8_t>& mask,
+                        const ShiftedMask& shifts, Field& field);
+  void add_credit(Field& field) const;
 
-  // Where the stamp of pixel (x, y) begins.
+  // Where a stamp that lands there begins.
   template <class P>
-  auto under(P& plane, const Stamp& stamp, int x, int y) const {
-    return plane.at(x * repeat_[0] + stamp.first[0], y * repeat_[1] + stamp.first[1]);
+  auto under(P& plane, const Stamp& stamp, int x, int y, const Landing& landing = {}) const {
+    return plane.at(x * repeat_[0] + landing.by[0] + stamp.first[0],
+                    y * repeat_[1] + landing.by[1] + stamp.first[1]);
   }
   StampOverlay overlay(const Field& field, int x, int y, int sign) const;
 
+  Grid grid_;
   std::array<int, 2> repeat_;
-  int slices_;
   const Surroundings& around_;
-  std::array<int, 2> first_{};  // the corners of all stamps together
+  std::map<std::pair<const StampedModel*, int>, ShiftedStamps> shifted_stamps_;  // by layer
+  std::vector<Rect> fit_rects_;  // what all stamps of a fit reach, from the voxel they land in
+  Plane<Landing> landings_;      // of the tile's pixels
+  Rect fit_reach_;               // of all pixels of the tile, from their first voxels
+  std::array<int, 2> first_{};   // the corners of all stamps together, wherever they land
   std::array<int, 2> last_{};
   Rect voxels_;
   Rect masks_;

@@ -23,6 +23,10 @@ struct Rect {
   bool empty() const { return x0 >= x1 || y0 >= y1; }
   bool holds(int x, int y) const { return x >= x0 && x < x1 && y >= y0 && y < y1; }
   Rect grown(int dx, int dy) const { return {x0 - dx, y0 - dy, x1 + dx, y1 + dy}; }
+  Rect joined(const Rect& with) const {
+    return {std::min(x0, with.x0), std::min(y0, with.y0), std::max(x1, with.x1),
+            std::max(y1, with.y1)};
+  }
   Rect cut(const Rect& to) const {
     return {std::max(x0, to.x0), std::max(y0, to.y0), std::min(x1, to.x1), std::min(y1, to.y1)};
   }

@@ -8,8 +8,6 @@
 namespace binderjet {
 namespace {
 
-constexpr int kVector = 8;  // ints that are worked on at once
-
 // The share of one pixel's binder along an axis, in voxels from its first: the kernel of each of
 // its `repeat` voxels.
 std::vector<double> along(const Kernel& kernel, int repeat) {
@@ -40,7 +38,7 @@ Stamp empty_stamp(std::span<const DoseTerm> terms, int layer, const Grid& grid) 
     }
     any = true;
   }
-  stamp.width = (last[0] - stamp.first[0] + kVector) / kVector * kVector;
+  stamp.width = whole_vectors(last[0] - stamp.first[0] + 1);
   stamp.height = last[1] - stamp.first[1] + 1;
   return stamp;
 }
@@ -68,8 +66,9 @@ Stamp stamp_of(std::span<const DoseTerm> terms, int layer, const Grid& grid, int
   return stamp;
 }
 
-bool same_terms(const ModelForm& a, const ModelForm& b) {
-  return std::equal(a.terms.begin(), a.terms.end(), b.terms.begin(), b.terms.end(),
+bool same_dose(const ModelForm& a, const ModelForm& b) {
+  return a.placed.gains.empty() &&
+         std::equal(a.terms.begin(), a.terms.end(), b.terms.begin(), b.terms.end(),
                     [](const DoseTerm& s, const DoseTerm& t) {
                       return s.layer == t.layer && s.x == t.x && s.y == t.y && s.gain == t.gain;
                     });
@@ -90,6 +89,7 @@ int dose_unit(const ModelForm& form) {
 
 StampedModel stamped(const ModelForm& form, const Grid& grid) {
   StampedModel model;
+  model.terms = form.terms;
   model.unit = dose_unit(form);
   std::set<int> layers;
   for (const DoseTerm& term : form.terms) layers.insert(term.layer);
@@ -108,7 +108,7 @@ std::vector<StampedModel> stamped(std::span<const PrinterModel> models,
   for (std::size_t m = 0; m < models.size(); ++m) {
     const ModelForm& form = models[m].form();
     const auto known = std::find_if(forms.begin(), forms.end(), [&](const ModelForm* other) {
-      return same_terms(form, *other);
+      return same_dose(form, *other);
     });
     const auto at = static_cast<std::size_t>(known - forms.begin());
     if (known == forms.end()) {

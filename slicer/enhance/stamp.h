@@ -27,12 +27,20 @@ struct DoseLevel {
   int weight = 1;
 };
 
-// Models that differ in their levels only share their stamps and so their doses.
+// Models that differ in their levels only share their stamps and so their doses; where the dose has
+// gains they do not, for a gain is taken as a credit of dose that depends on the level.
 struct StampedModel {
-  std::vector<Stamp> stamps;  // one per layer that matters
+  std::vector<DoseTerm> terms;
+  std::vector<Stamp> stamps;  // one per layer that matters, of a pixel that is not shifted
   std::vector<DoseLevel> levels;
   int unit = 0;  // a dose of 1, in the unit of stamps and levels
 };
+
+// Columns of a stamp that are worked on at once are whole vectors.
+constexpr int kStampVector = 8;
+constexpr int whole_vectors(int columns) {
+  return (columns + kStampVector - 1) / kStampVector * kStampVector;
+}
 
 // weights[i] is how much a wrong voxel counts under models[i]. The unit is 2^-29 or, where binder
 // adds up to more than 1, coarser; a dose within rounding of a level counts as bound.

@@ -11,6 +11,7 @@
 #include "slicer/masks.h"
 #include "slicer/score.h"
 #include "tests/support/mask_regions.h"
+#include "tests/support/one_of_each.h"
 #include "tests/support/random.h"
 
 namespace binderjet {
@@ -70,6 +71,28 @@ std::vector<std::int64_t> wrong(const Case& c, const Volume& masks) {
   return out;
 }
 
+// The same by the streaming engine, for what the place on the bed does.
+std::vector<std::int64_t> wrong_in_place(const Case& c, const Volume& masks) {
+  const PrinterModel& model = c.model();
+  const auto target =
+      whole::voxel_stream(c.target, c.grid.detail_vx[2], {0, c.layers})->next(c.layers);
+  std::vector<Shared<RunLayer>> layers;
+  for (int k = 0; k < c.layers; ++k) {
+    layers.push_back(std::make_shared<const RunLayer>(whole::slice(masks, k)));
+  }
+  std::vector<std::int64_t> out;
+  for (int k = 0; k < c.layers; ++k) {
+    std::vector<Shared<RunLayer>> window;
+    for (int n = k - model.window_reach(); n <= k + model.window_reach(); ++n) {
+      window.push_back(n < 0 || n >= c.layers ? nullptr : layers[static_cast<std::size_t>(n)]);
+    }
+    const VoxelCounts counts =
+        count_voxels(*target[static_cast<std::size_t>(k)], model.print(window, k));
+    out.push_back(counts.missing + counts.extra);
+  }
+  return out;
+}
+
 std::int64_t sum(const std::vector<std::int64_t>& values) {
   return std::accumulate(values.begin(), values.end(), std::int64_t{0});
 }
@@ -85,6 +108,41 @@ TEST(Inverse, NeverPrintsALayerWorseThanPlainMasks) {
   }
 }
 
+// A small relief with a slot, a pin and a step, in the middle of its box.
+Case in_place(Random& random, const EffectSpec& effect) {
+  Case c;
+  c.grid = {{0.1, 0.08, 0.1}, {2, 2, 2}};
+  c.layers = 6;
+  c.target = Volume(80, 80, 12);
+  const int slot = random.number(3, 8);
+  const int pin = random.number(3, 8);
+  c.target.fill([&](int x, int y, int z) {
+    if (x < 20 || y < 20 || x >= 60 || y >= 60) return false;
+    if (z < 6) return !(x >= 34 && x < 34 + slot && y >= 26 && y < 50);
+    return x < 36 || (x >= 46 && x < 46 + pin && y >= 30 && y < 50);
+  });
+  const JobPlace place{{3, 5}, {4, 3.2}};
+  c.window = process_window({{"spread", {{"shape", "box"}}, {{"width_mm", {0.7, 0.5}}}},
+                             {"threshold", {}, {{"level", {0.5}}}},
+                             effect},
+                            c.grid, place);
+  return c;
+}
+
+TEST(Inverse, AnswersEveryEffectAndPrintsNoLayerWorse) {
+  Random random;
+  for (const EffectSpec& effect : whole::one_of_each()) {
+    SCOPED_TRACE(effect.kind);
+    const Case c = in_place(random, effect);
+    const auto plain = wrong_in_place(c, whole::masks(c.target, c.grid));
+    const auto inverse = wrong_in_place(c, streamed(c, {0, c.layers}, kBlockLayers));
+    for (std::size_t k = 0; k < plain.size(); ++k) EXPECT_LE(inverse[k], plain[k]) << "layer " << k;
+    std::cout << effect.kind << ": wrong voxels " << sum(plain) << " plain, " << sum(inverse)
+              << " inverse\n";
+    EXPECT_LT(sum(inverse), 0.7 * static_cast<double>(sum(plain)));
+  }
+}
+
 TEST(Inverse, KeepsToTheMaskRules) {
   Random random;
   for (int round = 0; round < 60; ++round) {
@@ -92,7 +150,7 @@ TEST(Inverse, KeepsToTheMaskRules) {
     const Case c = random_case(random, true);
     const Volume masks = streamed(c, {0, c.layers}, kBlockLayers);
     for (int k = 0; k < c.layers; ++k) {
-      const MaskRegions found = mask_regions(whole::slice(masks, k));
+      const MaskRegions found = whole::mask_regions(whole::slice(masks, k));
       ASSERT_GE(found.least_island_px, c.rules.min_island_px) << "layer " << k;
       ASSERT_GE(found.least_hole_px, c.rules.min_hole_px) << "layer " << k;
     }

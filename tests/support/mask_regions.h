@@ -3,19 +3,12 @@
 #pragma once
 
 #include <algorithm>
-#include <limits>
+#include <cstdint>
 #include <vector>
 
-#include "slicer/run_layer.h"
+#include "slicer/mask_regions.h"
 
-namespace binderjet {
-
-// In pixels that meet at their sides; the largest int where there are none. The powder around the
-// mask is no hole.
-struct MaskRegions {
-  int least_island_px = std::numeric_limits<int>::max();
-  int least_hole_px = std::numeric_limits<int>::max();
-};
+namespace binderjet::whole {
 
 inline MaskRegions mask_regions(const RunLayer& mask) {
   const int nx = mask.width() + 2;
@@ -42,10 +35,10 @@ inline MaskRegions mask_regions(const RunLayer& mask) {
       add(x, y - 1);
       add(x, y + 1);
     }
-    int& least = solid ? out.least_island_px : out.least_hole_px;
-    if (start > 0) least = std::min(least, static_cast<int>(found.size()));
+    std::int64_t& least = solid ? out.least_island_px : out.least_hole_px;
+    if (start > 0) least = std::min(least, static_cast<std::int64_t>(found.size()));
   }
   return out;
 }
 
-}  // namespace binderjet
+}  // namespace binderjet::whole

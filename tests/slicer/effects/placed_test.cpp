@@ -6,6 +6,7 @@
 #include "slicer/density.h"
 #include "slicer/effects/model.h"
 #include "slicer/error.h"
+#include "tests/support/one_of_each.h"
 #include "tests/support/random.h"
 
 namespace binderjet {
@@ -118,36 +119,10 @@ TEST(PlacedEffects, RefusesTwoRadiiOfDensity) {
   EXPECT_THROW(PrinterModel({kThreshold, density(1), density(2)}, kGrid), Error);
 }
 
-// One of each kind, with numbers that show on a small part.
-std::vector<EffectSpec> one_of_each() {
-  return {{"tail", {}, {{"share", {0.3}}, {"width_mm", {0.8, 1.2}}}},
-          {"rounding", {}, {{"radius_mm", {0.12}}}},
-          {"z_bleed_down", {}, {{"share", {0.4}}}},
-          {"z_wick_up", {}, {{"share", {0.3}}}},
-          {"density", {}, {{"strength", {0.5}}, {"radius_mm", {0.4}}, {"reference", {0.3}}}},
-          {"shift", {}, {{"by_mm", {0.07, -0.13}}}},
-          {"registration_drift", {}, {{"per_mm", {0.3, -0.2}}}},
-          {"layer_shift_low", {}, {{"by_mm", {0.2, 0.1}}, {"height_mm", {0.3}}}},
-          {"parity", {}, {{"by_mm", {0.11, 0.03}}}},
-          {"scale_xyz", {}, {{"by", {0.05, -0.04}}}},
-          {"grad_bed", {}, {{"per_mm", {0.05, -0.1}}, {"per_mm2", {0.02}}, {"center_mm", {1, 2}}}},
-          {"grad_z", {}, {{"per_mm", {-0.2}}, {"from_mm", {0}}}},
-          {"pause", {}, {{"at_mm", {0.25}}, {"amount", {0.3}}}},
-          {"first_layers", {}, {{"amount", {0.5}}, {"height_mm", {0.2}}}},
-          {"band_swath", {}, {{"direction_deg", {30}}, {"period_mm", {1.3}}, {"wave", {0.2, 0.1}}}},
-          {"jet_out", {}, {{"from_mm", {0.8}}, {"to_mm", {1.2}}, {"amount", {-0.5}}}},
-          {"empirical",
-           {{"acts", "shift_x"}, {"axis", "y"}, {"form", "periodic"}},
-           {{"period", {0.9}}, {"wave", {0.1, 0.05}}}},
-          {"empirical",
-           {{"acts", "dose"}, {"axis", "position"}, {"form", "local"}},
-           {{"center_mm", {1.5, 1}}, {"at", {0}}, {"width", {0.5}}, {"amount", {0.4}}}}};
-}
-
 // The streamed engine on runs and integers against the probe's plain sums of real numbers.
 TEST(PlacedEffects, PrintWhatTheProbeSays) {
   Random random;
-  for (const EffectSpec& effect : one_of_each()) {
+  for (const EffectSpec& effect : whole::one_of_each()) {
     SCOPED_TRACE(effect.kind);
     const Grid grid{{0.1, 0.08, 0.1}, {2, 2, 2}};
     const int layers = 6;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Tiles are where something is to be decided, and all of it.
-#include "slicer/enhance/active_tiles.h"
+#include "slicer/enhance/search_tiles.h"
 
 #include <gtest/gtest.h>
 
@@ -12,7 +12,7 @@ namespace {
 
 using whole::Random;
 
-TEST(ActiveTiles, AreOnlyAroundTheEdgeOfALargePart) {
+TEST(SearchTiles, AreOnlyAroundTheEdgeOfALargePart) {
   const Grid grid{{1, 1, 1}, {2, 2, 1}};
   const int size = 20 * kTilePx;
   RunLayer slice(2 * size);
@@ -24,13 +24,13 @@ TEST(ActiveTiles, AreOnlyAroundTheEdgeOfALargePart) {
     slice.end_row();
   }
   const RunLayer* slices[] = {&slice};
-  const auto tiles = active_tiles(slices, grid, {10, 6});
+  const auto tiles = search_tiles(slices, grid, {10, 6});
   // Four sides of 1300 voxels, 13.5 tiles each, and no more than two tiles wide.
   EXPECT_GE(tiles.size(), 4U * 13);
   EXPECT_LE(tiles.size(), 2U * 4 * 15);
 }
 
-TEST(ActiveTiles, LeaveOutOnlyPixelsThatReachNoChange) {
+TEST(SearchTiles, LeaveOutOnlyPixelsThatReachNoChange) {
   Random random;
   for (int round = 0; round < 100; ++round) {
     SCOPED_TRACE(round);
@@ -43,7 +43,7 @@ TEST(ActiveTiles, LeaveOutOnlyPixelsThatReachNoChange) {
     const RunLayer above = whole::slice(target, 1);
     const RunLayer* slices[] = {&below, &above};
     Plane<std::uint8_t> active(Rect{0, 0, nx, ny});
-    for (const Rect& tile : active_tiles(slices, grid, reach)) {
+    for (const Rect& tile : search_tiles(slices, grid, reach)) {
       for (int y = tile.y0; y < tile.y1; ++y) {
         for (int x = tile.x0; x < tile.x1; ++x) ++*active.at(x, y);
       }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "slicer/enhance/active_tiles.h"
+#include "slicer/enhance/search_tiles.h"
 
 #include <algorithm>
 
@@ -59,7 +59,7 @@ class TileMarks {
 
 }  // namespace
 
-std::vector<Rect> active_tiles(std::span<const RunLayer* const> slices, const Grid& grid,
+std::vector<Rect> search_tiles(std::span<const RunLayer* const> slices, const Grid& grid,
                                std::array<int, 2> reach_vx) {
   if (slices.empty()) return {};
   const RunLayer& front = *slices.front();

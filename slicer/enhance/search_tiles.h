@@ -18,7 +18,7 @@ constexpr int kTilePx = 48;
 // Disjoint tiles of the box's pixels, row by row, that hold every pixel with a boundary of the
 // slices within `reach_vx`: a side between two voxels that differ, in a slice or from one to the
 // next of `slices`. All else is the same as far as a pixel can reach.
-std::vector<Rect> active_tiles(std::span<const RunLayer* const> slices, const Grid& grid,
+std::vector<Rect> search_tiles(std::span<const RunLayer* const> slices, const Grid& grid,
                                std::array<int, 2> reach_vx);
 
 }  // namespace binderjet

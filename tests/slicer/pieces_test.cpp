@@ -1,0 +1,93 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Parts that come out in several pieces.
+#include "slicer/pieces.h"
+
+#include <gtest/gtest.h>
+
+#include <map>
+#include <set>
+
+#include "tests/support/random.h"
+
+namespace binderjet {
+namespace {
+
+using whole::Random;
+using whole::Volume;
+
+std::int64_t separated(const Volume& target, const Volume& printed, int rz) {
+  PieceCounter counter;
+  const auto layers = whole::voxel_stream(target, rz, {0, printed.nz})->next(printed.nz);
+  for (int k = 0; k < printed.nz; ++k) {
+    counter.add(*layers[static_cast<std::size_t>(k)], whole::slice(printed, k));
+  }
+  return counter.separated();
+}
+
+// The region of each voxel by flooding; 0 is powder.
+std::vector<int> flooded(const Volume& v) {
+  std::vector<int> region(v.bits.size(), 0);
+  int count = 0;
+  for (int z = 0; z < v.nz; ++z)
+    for (int y = 0; y < v.ny; ++y)
+      for (int x = 0; x < v.nx; ++x) {
+        if (v.at(x, y, z) == 0 || region[v.place(x, y, z)] != 0) continue;
+        region[v.place(x, y, z)] = ++count;
+        std::vector<std::array<int, 3>> found{{x, y, z}};
+        for (std::size_t next = 0; next < found.size(); ++next) {
+          for (const auto& d : whole::kFaces) {
+            const auto [a, b, c] = found[next];
+            if (v.at(a + d[0], b + d[1], c + d[2]) == 0) continue;
+            int& beside = region[v.place(a + d[0], b + d[1], c + d[2])];
+            if (beside != 0) continue;
+            beside = count;
+            found.push_back({a + d[0], b + d[1], c + d[2]});
+          }
+        }
+      }
+  return region;
+}
+
+TEST(Pieces, ABarWithAGapInItsPrintIsSeparated) {
+  Volume bar(20, 3, 2);
+  bar.fill([](int x, int, int) { return x >= 2 && x < 18; });
+  Volume broken(20, 3, 1);
+  broken.fill([](int x, int, int) { return x >= 3 && x < 17 && x != 9; });
+  EXPECT_EQ(separated(bar, bar, 1), 0);
+  EXPECT_EQ(separated(bar, broken, 2), 1);
+}
+
+TEST(Pieces, TwoLegsThatMeetAboveAreOnePart) {
+  // Printed without its bridge the part is two.
+  Volume arch(9, 1, 4);
+  arch.fill([](int x, int, int z) { return z >= 2 || x < 3 || x >= 6; });
+  Volume legs(9, 1, 4);
+  legs.fill([](int x, int, int) { return x < 3 || x >= 6; });
+  EXPECT_EQ(separated(arch, arch, 1), 0);
+  EXPECT_EQ(separated(arch, legs, 1), 1);
+}
+
+TEST(Pieces, AreThoseOfAFlood) {
+  Random random;
+  for (int round = 0; round < 300; ++round) {
+    SCOPED_TRACE(round);
+    const int rz = random.number(1, 2);
+    const int layers = random.number(1, 5);
+    const Volume target = random.volume(random.number(1, 12), random.number(1, 12), layers * rz);
+    const Volume printed = random.volume(target.nx, target.ny, layers);
+    Volume slices(target.nx, target.ny, layers * rz);
+    slices.fill([&](int x, int y, int z) { return printed.at(x, y, z / rz) == 1; });
+    const std::vector<int> parts = flooded(target);
+    const std::vector<int> pieces = flooded(slices);
+    std::map<int, std::set<int>> of;
+    for (std::size_t i = 0; i < parts.size(); ++i) {
+      if (parts[i] != 0 && pieces[i] != 0) of[parts[i]].insert(pieces[i]);
+    }
+    std::int64_t expected = 0;
+    for (const auto& [part, all] : of) expected += all.size() > 1 ? 1 : 0;
+    ASSERT_EQ(separated(target, printed, rz), expected);
+  }
+}
+
+}  // namespace
+}  // namespace binderjet
