@@ -36,9 +36,14 @@ void sort_and_merge(std::vector<Ramp>& ramps) {
   std::erase_if(ramps, [](const Ramp& ramp) { return ramp.weight == 0; });
 }
 
+std::int64_t part_of(std::int64_t weight, double share) {
+  return std::llround(static_cast<double>(weight) * share);
+}
+
 // Adds the flips of a mask for voxel row `y` of the result.
-void add_ramps(const RunLayer& mask, int y, std::array<int, 2> repeat, const Kernel& along_y,
-               std::int64_t scale, std::size_t kernel, std::vector<Ramp>& ramps) {
+void add_ramps(const RunLayer& mask, int y, std::array<int, 2> repeat, const PlacedDose& placed,
+               const Kernel& along_y, std::int64_t scale, std::size_t kernel,
+               std::vector<Ramp>& ramps) {
   const int first = std::max(0, y - along_y.last());
   const int last = std::min(mask.height() * repeat[1] - 1, y - along_y.first);
   for (int voxel_row = first; voxel_row <= last;) {
@@ -47,6 +52,9 @@ void add_ramps(const RunLayer& mask, int y, std::array<int, 2> repeat, const Ker
     for (; voxel_row <= last && voxel_row / repeat[1] == row; ++voxel_row) {
       weight += along_y.at(y - voxel_row) * scale;
     }
+    placed.for_each_weakening(mask.row(row), [&](int pixel, double share) {
+      ramps.push_back({pixel * repeat[0], kernel, -part_of(weight, share)});
+    });
     for (const int flip : mask.row(row)) {
       ramps.push_back({flip * repeat[0], kernel, weight});
       weight = -weight;
@@ -97,18 +105,25 @@ class ShiftedRamps {
     for (const MaskShift& shift : placed_.shifts) sum += shift.most_mm;
     return sum;
   }
-  void add_row(std::span<const int> flips, Spot spot, std::int64_t weight, std::size_t kernel,
-               std::vector<Ramp>& ramps) const {
-    const double voxel_mm = grid_.voxel_mm(0);
+  void add_row(std::span<const int> flips, const Spot& spot, std::int64_t weight,
+               std::size_t kernel, std::vector<Ramp>& ramps) const {
+    placed_.for_each_weakening(flips, [&](int pixel, double share) {
+      add_flip(pixel, spot, -part_of(weight, share), kernel, ramps);
+    });
     for (const int flip : flips) {
-      spot.x_mm = place_.origin_mm[0] + flip * grid_.pitch_mm[0];
-      const int at = fine(flip * grid_.detail_vx[0] + placed_.shift_at(spot)[0] / voxel_mm);
-      const int whole = floor_div(at, kFine);
-      const int part = at - whole * kFine;
-      ramps.push_back({whole, kernel, weight * (kFine - part)});
-      if (part != 0) ramps.push_back({whole + 1, kernel, weight * part});
+      add_flip(flip, spot, weight, kernel, ramps);
       weight = -weight;
     }
+  }
+  void add_flip(int flip, Spot spot, std::int64_t weight, std::size_t kernel,
+                std::vector<Ramp>& ramps) const {
+    spot.x_mm = place_.origin_mm[0] + flip * grid_.pitch_mm[0];
+    const double shift_vx = placed_.shift_at(spot)[0] / grid_.voxel_mm(0);
+    const int at = fine(flip * grid_.detail_vx[0] + shift_vx);
+    const int whole = floor_div(at, kFine);
+    const int part = at - whole * kFine;
+    ramps.push_back({whole, kernel, weight * (kFine - part)});
+    if (part != 0) ramps.push_back({whole + 1, kernel, weight * part});
   }
 
   const Grid& grid_;
@@ -282,7 +297,7 @@ RunLayer DoseFilter::operator()(std::span<const RunLayer* const> window, int lay
       const RunLayer* from = window[static_cast<std::size_t>(middle + term.layer)];
       if (from == nullptr) continue;
       if (placed_.shifts.empty()) {
-        add_ramps(*from, y, repeat_, term.y, term.scale, term.kernel, ramps);
+        add_ramps(*from, y, repeat_, placed_, term.y, term.scale, term.kernel, ramps);
       } else {
         shifted.add(*from, y, layer + term.layer, term.y, term.scale, term.kernel, ramps);
       }

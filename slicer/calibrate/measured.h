@@ -2,6 +2,7 @@
 // What came out of the powder, on the voxel grid of the job: a scan registered and resampled.
 #pragma once
 
+#include <functional>
 #include <optional>
 #include <span>
 #include <string>
