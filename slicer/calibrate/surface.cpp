@@ -114,32 +114,41 @@ std::vector<const RunLayer*> mask_window(const MeasuredJob& job, int index, int 
   return window_of(job.masks, index, reach);
 }
 
-std::vector<Shared<RunLayer>> print_layers(const MeasuredJob& job,
-                                           const std::vector<EffectSpec>& model,
+std::vector<Shared<RunLayer>> bound_layers(const MeasuredJob& job, const PrinterModel& printer,
                                            const LayerChoice& layers) {
-  const PrinterModel printer(model, job.grid, job.place);
   const int around = printer.wear_reach();
-  // Wear takes the layers around one, so those are bound too, once.
   std::vector<Shared<RunLayer>> bound(job.masks.size());
   oneapi::tbb::parallel_for(0, job.layers(), [&](int index) {
-    const auto near = [&](int k) { return k >= 0 && k < job.layers() && layers[std::size_t(k)]; };
-    bool wanted = false;
-    for (int k = index - around; k <= index + around && !wanted; ++k) wanted = near(k);
-    if (!wanted) return;
+    const auto first = layers.begin() + std::max(0, index - around);
+    const auto last = layers.begin() + std::min(job.layers(), index + around + 1);
+    if (std::find(first, last, true) == last) return;
     job.check();
     const auto window = mask_window(job, index, printer.bind_reach());
     bound[static_cast<std::size_t>(index)] =
         std::make_shared<const RunLayer>(printer.bind(window, job.first_layer + index));
   });
-  if (printer.form().wear.empty()) return bound;
+  return bound;
+}
+
+std::vector<Shared<RunLayer>> worn_layers(const MeasuredJob& job, const PrinterModel& printer,
+                                          const std::vector<Shared<RunLayer>>& bound,
+                                          const LayerChoice& layers) {
   std::vector<Shared<RunLayer>> out(job.masks.size());
   oneapi::tbb::parallel_for(0, job.layers(), [&](int index) {
     if (!layers[static_cast<std::size_t>(index)]) return;
     job.check();
-    out[static_cast<std::size_t>(index)] =
-        std::make_shared<const RunLayer>(printer.worn(window_of(bound, index, around)));
+    out[static_cast<std::size_t>(index)] = std::make_shared<const RunLayer>(
+        printer.worn(window_of(bound, index, printer.wear_reach())));
   });
   return out;
+}
+
+std::vector<Shared<RunLayer>> print_layers(const MeasuredJob& job,
+                                           const std::vector<EffectSpec>& model,
+                                           const LayerChoice& layers) {
+  const PrinterModel printer(model, job.grid, job.place);
+  auto bound = bound_layers(job, printer, layers);
+  return printer.form().wear.empty() ? bound : worn_layers(job, printer, bound, layers);
 }
 
 std::vector<SurfacePoint> surface_points(const MeasuredJob& job,

@@ -8,6 +8,7 @@
 
 #include "slicer/calibrate/printed_error.h"
 #include "slicer/calibrate/sign_flips.h"
+#include "slicer/opening.h"
 
 namespace binderjet {
 namespace {
@@ -41,19 +42,19 @@ class Trials {
   // Layers that were lost or came twice, and a height that is compressed: layer k of the print is
   // what the model makes of layer k + by, so all of them need only the prints that are there.
   void try_layer_orders() {
-    const auto printed = print_layers(job_, model_, LayerChoice(job_.masks.size(), true));
+    printed_ = print_layers(job_, model_, LayerChoice(job_.masks.size(), true));
     constexpr int kMost = 3;
     std::map<int, WrongCounts> wrong;
     for (int by = -kMost; by <= kMost; ++by) {
-      std::vector<Shared<RunLayer>> moved(printed.size());
+      std::vector<Shared<RunLayer>> moved(printed_.size());
       for (int k = 0; k < job_.layers(); ++k) {
         const auto here = static_cast<std::size_t>(k);
         if (!layers_[here]) continue;
         const int from = k + by;
         moved[here] = from < 0 || from >= job_.layers()
                           ? std::make_shared<const RunLayer>(
-                                RunLayer::powder(printed[here]->width(), printed[here]->height()))
-                          : printed[static_cast<std::size_t>(from)];
+                                RunLayer::powder(printed_[here]->width(), printed_[here]->height()))
+                          : printed_[static_cast<std::size_t>(from)];
       }
       wrong[by] = wrong_counts(job_, moved);
     }
@@ -91,8 +92,10 @@ class Trials {
     }
   }
 
-  // What happens to the part when it is dug out. A sample of the layers is enough to choose.
+  // What happens to the part when it is dug out: done to what is printed already. A sample of the
+  // layers is enough to choose.
   void try_wear() {
+    const EffectSpec level{"threshold", {}, {{"level", {0.5}}}};
     LayerChoice some(layers_.size(), false);
     int count = 0;
     for (std::size_t k = 0; k < layers_.size(); ++k) some[k] = layers_[k] && count++ % 3 == 0;
@@ -101,12 +104,18 @@ class Trials {
       if (!some[k]) before[k] = {};
     }
     const double all = std::max(1.0, wrong()) / std::max(1.0, static_cast<double>(sum_of(before)));
+    const auto add_print = [&](const std::string& kind, const std::string& axis,
+                               const EffectSpec& effect,
+                               const std::vector<Shared<RunLayer>>& print) {
+      std::vector<double> gain = gains(before, wrong_counts(job_, print));
+      for (double& cell : gain) cell *= all;
+      out_.push_back(
+          {kind, {axis, "local", {}}, kNowhere, with_effect(model_, effect), std::move(gain)});
+    };
     const auto add = [&](const std::string& kind, const std::string& axis,
                          const EffectSpec& effect) {
-      const Model next = with_effect(model_, effect);
-      std::vector<double> gain = gains(before, wrong_counts(job_, print_layers(job_, next, some)));
-      for (double& cell : gain) cell *= all;
-      out_.push_back({kind, {axis, "local", {}}, kNowhere, next, std::move(gain)});
+      const PrinterModel printer({level, effect}, job_.grid, job_.place);
+      add_print(kind, axis, effect, worn_layers(job_, printer, printed_, some));
     };
     if (!has("rounding")) {
       for (const double radius_mm : {0.07, 0.13}) {
@@ -125,16 +134,23 @@ class Trials {
         }
       }
     }
-    if (!has("survive")) {
-      for (const double width_mm : {0.25, 0.5}) {
-        add("survive", "density", {"survive", {}, {{"width_mm", {width_mm, width_mm}}}});
+    if (has("survive")) return;
+    for (const double width_mm : {0.25, 0.5}) {
+      std::vector<Shared<RunLayer>> print(printed_.size());
+      for (std::size_t k = 0; k < print.size(); ++k) {
+        if (!some[k]) continue;
+        print[k] = std::make_shared<const RunLayer>(
+            opening(*printed_[k], {pixels_for(width_mm, job_.grid.voxel_mm(0)),
+                                   pixels_for(width_mm, job_.grid.voxel_mm(1))}));
       }
+      add_print("survive", "density", {"survive", {}, {{"width_mm", {width_mm, width_mm}}}}, print);
     }
   }
 
   const MeasuredJob& job_;
   const Model& model_;
   const LayerChoice& layers_;
+  std::vector<Shared<RunLayer>> printed_;  // by the model as it is
   WrongCounts before_;
   std::vector<Tried> out_;
 };
