@@ -117,7 +117,8 @@ std::vector<Calibrator::Fitted> Calibrator::regressed() {
   remaining_ = Remaining{winner.covariate, std::max(0.0, best.share)};
   step_(fmt::format("best is {} of {} ({}): {:.3f} of the residual, p {:.3f}", winner.kind,
                     winner.covariate.axis, winner.covariate.form, best.share, best.p));
-  if (best.p > limits_.most_p || best.share < limits_.least_share || !best.folds_agree) return {};
+  if (!limits_.sure(best.p, best.share) || best.share < limits_.least_share || !best.folds_agree)
+    return {};
   std::vector<Fitted> out;
   for (std::size_t i = 0; i < std::min(kMostTried, choices.size()); ++i) {
     Fitted one{
@@ -135,7 +136,8 @@ std::vector<Calibrator::Fitted> Calibrator::tried() {
   std::vector<Fitted> out;
   for (Trial& trial : try_effects(job_, model_, seen_)) {
     if (out.size() == kMostTried) break;
-    if (trial.p > limits_.most_p || trial.share < limits_.least_gain || !trial.folds_agree) {
+    if (!limits_.sure(trial.p, trial.share) || trial.share < limits_.least_gain ||
+        !trial.folds_agree) {
       continue;
     }
     step_(fmt::format("tried {}: {:.3f} of the wrong voxels, p {:.3f}", trial.candidate.kind,

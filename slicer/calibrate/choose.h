@@ -15,7 +15,7 @@ struct Choice {
   std::vector<double> coefficients;
   double share = 0;          // of the residual's power that it takes where the fit did not look
   double p = 1;              // family-wise, over all candidates
-  bool folds_agree = false;  // at least four of five, along every axis it does not depend on
+  bool folds_agree = false;  // along every axis it does not depend on (most_agree())
   // Whether the regression cannot tell it from the winner: within one paired standard error.
   bool equal = false;
 };

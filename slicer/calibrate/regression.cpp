@@ -145,7 +145,7 @@ Vector solve(const Matrix& gram, const Vector& right) {
 // What a candidate takes of each cell when fitted on the other slabs along one axis.
 struct HeldOut {
   std::vector<double> gain = std::vector<double>(kCells, 0);
-  int good_folds = 0;
+  std::array<double, kSlabs> folds{};
 };
 
 HeldOut held_out(const Normal& normal, const Matrix& gram, const Vector& right, int axis) {
@@ -168,7 +168,7 @@ HeldOut held_out(const Normal& normal, const Matrix& gram, const Vector& right, 
       out.gain[cell] = gain;
       sum += gain;
     }
-    if (sum > 0) ++out.good_folds;
+    out.folds[static_cast<std::size_t>(fold)] = sum;
   }
   return out;
 }
@@ -206,7 +206,7 @@ Tried attempt(const Candidate& candidate, const Normal& normal, double power) {
     if ((candidate.along & (1U << axis)) != 0) continue;
     const HeldOut folds = held_out(normal, gram, right, axis);
     for (std::size_t k = 0; k < kCells; ++k) out.gain[k] += folds.gain[k];
-    out.folds_agree = out.folds_agree && folds.good_folds >= kSlabs - 1;
+    out.folds_agree = out.folds_agree && most_agree(folds.folds);
     ++axes;
   }
   for (double& gain : out.gain) out.held_out += (gain /= axes) / power;

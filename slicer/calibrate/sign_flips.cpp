@@ -34,6 +34,13 @@ double family_p(std::span<const std::vector<double>* const> family, double best)
   return (1.0 + beaten) / (1 + kNullDraws);
 }
 
+bool most_agree(std::span<const double> slabs) {
+  constexpr double kNothing = 0.02;
+  const double least = -kNothing * sum_of_cells(slabs);
+  return least < 0 &&
+         std::count_if(slabs.begin(), slabs.end(), [&](double sum) { return sum < least; }) <= 1;
+}
+
 bool slabs_agree(std::span<const double> gain, unsigned along) {
   for (int axis = 0; axis < 3; ++axis) {
     if ((along & (1U << axis)) != 0) continue;
@@ -41,9 +48,7 @@ bool slabs_agree(std::span<const double> gain, unsigned along) {
     for (int k = 0; k < kCells; ++k) {
       sums[static_cast<std::size_t>(slab_of_cell(k, axis))] += gain[static_cast<std::size_t>(k)];
     }
-    if (std::count_if(sums.begin(), sums.end(), [](double sum) { return sum > 0; }) < kSlabs - 1) {
-      return false;
-    }
+    if (!most_agree(sums)) return false;
   }
   return true;
 }

@@ -19,7 +19,10 @@ double sum_of_cells(std::span<const double> gain);
 // well have been a loss.
 double family_p(std::span<const std::vector<double>* const> family, double best);
 
-// At least all slabs but one gain, along every axis that is not in `along` (candidate.h).
+// All in all a gain, and at most one slab loses; what is next to nothing of the whole has no voice,
+// for an effect may have nothing to act on there.
+bool most_agree(std::span<const double> slabs);
+// The same along every axis that is not in `along` (candidate.h).
 bool slabs_agree(std::span<const double> gain, unsigned along);
 
 // Whether two gains are apart by no more than one standard error of their difference, cell by cell,

@@ -17,7 +17,7 @@ struct Trial {
   Model model;
   double share = 0;          // of the wrong voxels that it takes away
   double p = 1;              // family-wise, over all that was tried
-  bool folds_agree = false;  // at least four slabs of five, along every axis it does not depend on
+  bool folds_agree = false;  // along every axis it does not depend on (most_agree())
 };
 
 // Those that make the print of the chosen layers better, the best first.
