@@ -119,8 +119,13 @@ std::vector<Calibrator::Fitted> Calibrator::regressed() {
                     winner.covariate.axis, winner.covariate.form, best.share, best.p));
   if (!limits_.sure(best.p, best.share) || best.share < limits_.least_share || !best.folds_agree)
     return {};
+  untried_equals_.clear();
   std::vector<Fitted> out;
-  for (std::size_t i = 0; i < std::min(kMostTried, choices.size()); ++i) {
+  for (std::size_t i = 0; i < choices.size(); ++i) {
+    if (i >= kMostTried) {
+      if (choices[i].equal) untried_equals_.push_back(candidates[choices[i].winner].kind);
+      continue;
+    }
     Fitted one{
         candidates[choices[i].winner], {}, choices[i].p, choices[i].share, choices[i].equal, {}};
     one.model = refit_with_taken(one.candidate.apply(choices[i].coefficients), one.candidate.effect,
@@ -186,8 +191,8 @@ bool Calibrator::take_best(std::vector<Fitted> fitted) {
   return true;
 }
 
-// Kinds that neither the printed voxels nor, if these are nearly as many, the residual can tell
-// from the best.
+// Names that neither the printed voxels nor, if these are nearly as many, the residual can tell
+// from the best. An effect without a name is no rival: it says no more than the residual does.
 std::vector<std::string> Calibrator::rivals_of(const std::vector<Fitted>& fitted,
                                                std::size_t best) const {
   constexpr double kNearly = 1.015;
@@ -195,13 +200,17 @@ std::vector<std::string> Calibrator::rivals_of(const std::vector<Fitted>& fitted
   const std::vector<double> gain = gains(before, fitted[best].counts);
   const auto fewest = static_cast<double>(sum_of(fitted[best].counts));
   std::vector<std::string> out;
+  const auto add = [&](const std::string& kind) {
+    const bool known = std::find(out.begin(), out.end(), kind) != out.end();
+    if (!known && kind != fitted[best].candidate.kind && kind != "empirical") out.push_back(kind);
+  };
   for (const Fitted& other : fitted) {
-    const std::string& kind = other.candidate.kind;
-    if (kind == fitted[best].candidate.kind) continue;
-    if (std::find(out.begin(), out.end(), kind) != out.end()) continue;
     const bool nearly = static_cast<double>(sum_of(other.counts)) <= kNearly * fewest;
-    if (alike(gain, gains(before, other.counts)) || (other.equal && nearly)) out.push_back(kind);
+    if (alike(gain, gains(before, other.counts)) || (other.equal && nearly)) {
+      add(other.candidate.kind);
+    }
   }
+  if (fitted[best].equal) std::for_each(untried_equals_.begin(), untried_equals_.end(), add);
   return out;
 }
 

@@ -68,6 +68,8 @@ class Calibrator {
   double wrong_;
   std::vector<Taken> taken_;
   std::optional<Remaining> remaining_;
+  // Kinds that the last regression cannot tell from its best, and that were not fitted.
+  std::vector<std::string> untried_equals_;
 };
 
 }  // namespace binderjet

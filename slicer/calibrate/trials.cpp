@@ -190,16 +190,22 @@ std::vector<Trial> try_effects(const MeasuredJob& job, const Model& model,
   }
   const double wrong = std::max(1.0, trials.wrong());
 
-  std::map<std::string, const Tried*> best;
+  // The best of each kind, in the order of trying: among equals the first is the simplest.
+  std::vector<const Tried*> best;
   for (const Tried& one : tried) {
-    const Tried*& of_kind = best[one.kind];
-    if (of_kind == nullptr || one.total() > of_kind->total()) of_kind = &one;
+    const auto of_kind = std::find_if(best.begin(), best.end(),
+                                      [&](const Tried* other) { return other->kind == one.kind; });
+    if (of_kind == best.end()) {
+      best.push_back(&one);
+    } else if (one.total() > (*of_kind)->total()) {
+      *of_kind = &one;
+    }
   }
   std::vector<Trial> out;
-  for (const auto& [kind, one] : best) {
+  for (const Tried* one : best) {
     if (one->total() <= 0) continue;
     Trial trial;
-    trial.candidate.kind = kind;
+    trial.candidate.kind = one->kind;
     trial.candidate.covariate = one->covariate;
     trial.candidate.along = one->along;
     trial.candidate.effect = model.size();
