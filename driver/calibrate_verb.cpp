@@ -49,6 +49,7 @@ MeasuredJob read_job(const std::string& name, const std::string& path,
   job.grid = {source.pitch_mm, profile.detail_vx};
   job.place = source.place();
   job.first_layer = source.first;
+  job.on_check = check_interrupt;
   const PrinterModel model(profile.effects, job.grid, job.place);
   const auto stream = printed_stream(source, model);
   std::vector<RunLayer> predicted;
@@ -67,7 +68,7 @@ MeasuredJob read_job(const std::string& name, const std::string& path,
       stack = fmt::format("{}/{}.slices", folder, fs::path(path_of_scan).filename().string());
       write_scan_stack(path_of_scan, job.grid.pitch_mm[2], stack);
     }
-    Measured measured = read_measured(stack, frame, predicted);
+    Measured measured = read_measured(stack, frame, predicted, check_interrupt);
     job.scanned = job.scanned || measured.registration.has_value();
     std::vector<Shared<RunLayer>> layers;
     for (RunLayer& layer : measured.layers) {
@@ -81,7 +82,10 @@ MeasuredJob read_job(const std::string& name, const std::string& path,
 
 std::string summary(const Calibration& calibration) {
   std::string text;
-  if (calibration.effects.empty()) text = "nothing is missing that this print shows\n";
+  if (calibration.verdict == "none") text = "nothing is missing that this print shows\n";
+  if (calibration.verdict == "unexplained" && calibration.effects.empty()) {
+    text = "the print is not as predicted, and nothing that was tried explains it\n";
+  }
   for (const FoundEffect& effect : calibration.effects) {
     text += fmt::format(
         "{}: depends on {}{}{}, p {:.3f}\n",
@@ -163,7 +167,7 @@ void run(const CalibrateOptions& options, const Console& console) {
   progress.advance(stacks + kSteps);
 
   std::string written;
-  if (calibration.verdict != "none") {
+  if (!calibration.effects.empty()) {
     written = calibrated_file_name(profile);
     write_text((folder / written).string(), calibrated_text(calibration, profile, options));
   }

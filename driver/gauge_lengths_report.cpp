@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cctype>
+#include <utility>
 
 #include "driver/calibration_report.h"
 #include "driver/gauge_report.h"
@@ -244,11 +245,7 @@ std::string page_of(const LengthFindings& found, const GaugeTable& table) {
           html::note(
               "Each batch told as so many millimetres on every length, and as so many per cent; "
               "rms on parts held out."));
-  std::string remarks;
-  for (const std::string& remark : table.remarks) remarks += html::note(remark);
-  body += html::section("Where the readings come from",
-                        remarks + html::note("binderjet " BINDERJET_VERSION));
-  return html::page("Calibration from gauges", body);
+  return gauge_page(std::move(body), table);
 }
 
 }  // namespace

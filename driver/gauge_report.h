@@ -23,4 +23,7 @@ GaugeSummary summarize(const SlotFindings& found, const GaugeTable& table,
                        const std::vector<EffectSpec>& declared);
 GaugeSummary summarize(const LengthFindings& found, const GaugeTable& table);
 
+// The page from its body, closed with where the table's readings come from.
+std::string gauge_page(std::string body, const GaugeTable& table);
+
 }  // namespace binderjet

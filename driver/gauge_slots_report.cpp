@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <cmath>
+#include <utility>
 
 #include "driver/calibration_report.h"
 #include "driver/gauge_report.h"
@@ -169,11 +170,7 @@ std::string page_of(const SlotFindings& found, const GaugeTable& table,
     body += html::section("What print would tell",
                           html::note(tell_apart_text(found)) + apart_table(found));
   }
-  std::string remarks;
-  for (const std::string& remark : table.remarks) remarks += html::note(remark);
-  body += html::section("Where the readings come from",
-                        remarks + html::note("binderjet " BINDERJET_VERSION));
-  return html::page("Calibration from gauges", body);
+  return gauge_page(std::move(body), table);
 }
 
 }  // namespace

@@ -10,9 +10,7 @@
 #include <cstdint>
 #include <cstring>
 #include <filesystem>
-#include <map>
 #include <numbers>
-#include <utility>
 
 #include "slicer/coupon_shapes.h"
 #include "slicer/error.h"
@@ -21,7 +19,6 @@
 namespace binderjet {
 namespace {
 
-Point sum(const Point& a, const Point& b) { return {a[0] + b[0], a[1] + b[1], a[2] + b[2]}; }
 Point scaled(const Point& a, double s) { return {a[0] * s, a[1] * s, a[2] * s}; }
 double dot(const Point& a, const Point& b) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }
 Point unit(const Point& a) { return scaled(a, 1 / std::sqrt(dot(a, a))); }
@@ -92,26 +89,7 @@ Mesh unit_ball(int rounds) {
       }
     }
   }
-  for (int round = 0; round < rounds; ++round) {
-    std::map<std::pair<int, int>, int> middles;
-    const auto middle = [&](int a, int b) {
-      const auto [place, added] = middles.try_emplace(std::minmax(a, b), 0);
-      if (added) {
-        place->second = static_cast<int>(mesh.points.size());
-        mesh.points.push_back(unit(sum(mesh.points[static_cast<std::size_t>(a)],
-                                       mesh.points[static_cast<std::size_t>(b)])));
-      }
-      return place->second;
-    };
-    std::vector<Triangle> finer;
-    for (const Triangle& t : mesh.triangles) {
-      const int ab = middle(t[0], t[1]);
-      const int bc = middle(t[1], t[2]);
-      const int ca = middle(t[2], t[0]);
-      finer.insert(finer.end(), {{t[0], ab, ca}, {ab, t[1], bc}, {ca, bc, t[2]}, {ab, bc, ca}});
-    }
-    mesh.triangles = std::move(finer);
-  }
+  for (int round = 0; round < rounds; ++round) split_unit_ball(mesh);
   return mesh;
 }
 

@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "slicer/coupon_shapes.h"
 
+#include <algorithm>
+#include <cmath>
+#include <map>
 #include <utility>
 
 namespace binderjet {
@@ -59,6 +62,34 @@ void add_prism(Mesh& mesh, const std::array<Point, 3>& base, const Point& way) {
     mesh.triangles.push_back(along > 0 ? Triangle{a + first, b + first, c + first}
                                        : Triangle{a + first, c + first, b + first});
   }
+}
+
+void split_unit_ball(Mesh& mesh) {
+  std::map<std::pair<int, int>, int> middles;
+  const auto middle = [&](int a, int b) {
+    const auto [place, added] = middles.try_emplace(std::minmax(a, b), 0);
+    if (added) {
+      Point m{};
+      double square = 0;
+      for (std::size_t axis = 0; axis < 3; ++axis) {
+        m[axis] = mesh.points[static_cast<std::size_t>(a)][axis] +
+                  mesh.points[static_cast<std::size_t>(b)][axis];
+        square += m[axis] * m[axis];
+      }
+      for (double& value : m) value /= std::sqrt(square);
+      place->second = static_cast<int>(mesh.points.size());
+      mesh.points.push_back(m);
+    }
+    return place->second;
+  };
+  std::vector<Triangle> finer;
+  for (const Triangle& t : mesh.triangles) {
+    const int ab = middle(t[0], t[1]);
+    const int bc = middle(t[1], t[2]);
+    const int ca = middle(t[2], t[0]);
+    finer.insert(finer.end(), {{t[0], ab, ca}, {ab, t[1], bc}, {ca, bc, t[2]}, {ab, bc, ca}});
+  }
+  mesh.triangles = std::move(finer);
 }
 
 }  // namespace binderjet

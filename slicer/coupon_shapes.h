@@ -17,6 +17,9 @@ void add_turned(Mesh& mesh, Point low, Point high, bool along_y);
 // A triangle moved along `way`, which is not in its plane.
 void add_prism(Mesh& mesh, const std::array<Point, 3>& base, const Point& way);
 
+// Cuts each triangle of a ball of radius 1 in four and lifts the new points onto it.
+void split_unit_ball(Mesh& mesh);
+
 Mesh full_coupon();
 
 }  // namespace binderjet

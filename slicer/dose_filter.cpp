@@ -37,9 +37,14 @@ void sort_and_merge(std::vector<Ramp>& ramps) {
   std::erase_if(ramps, [](const Ramp& ramp) { return ramp.weight == 0; });
 }
 
+std::int64_t part_of(std::int64_t weight, double share) {
+  return std::llround(static_cast<double>(weight) * share);
+}
+
 // Adds the flips of a mask for voxel row `y` of the result.
-void add_ramps(const RunLayer& mask, int y, std::array<int, 2> repeat, const Kernel& along_y,
-               std::int64_t scale, std::size_t kernel, std::vector<Ramp>& ramps) {
+void add_ramps(const RunLayer& mask, int y, std::array<int, 2> repeat, const PlacedDose& placed,
+               const Kernel& along_y, std::int64_t scale, std::size_t kernel,
+               std::vector<Ramp>& ramps) {
   const int first = std::max(0, y - along_y.last());
   const int last = std::min(mask.height() * repeat[1] - 1, y - along_y.first);
   for (int voxel_row = first; voxel_row <= last;) {
@@ -48,6 +53,9 @@ void add_ramps(const RunLayer& mask, int y, std::array<int, 2> repeat, const Ker
     for (; voxel_row <= last && voxel_row / repeat[1] == row; ++voxel_row) {
       weight += along_y.at(y - voxel_row) * scale;
     }
+    placed.for_each_weakening(mask.row(row), [&](int pixel, double share) {
+      ramps.push_back({pixel * repeat[0], kernel, -part_of(weight, share)});
+    });
     for (const int flip : mask.row(row)) {
       ramps.push_back({flip * repeat[0], kernel, weight});
       weight = -weight;
@@ -79,10 +87,15 @@ class ShiftedRamps {
       }
       if (weight == 0) continue;
       weight *= scale;
+      const auto add_flip = [&](int pixel, std::int64_t change) {
+        const auto [at, part] = split_fine(shifted.edge(place, pixel));
+        ramps.push_back({at, kernel, change * (kFine - part)});
+        if (part != 0) ramps.push_back({at + 1, kernel, change * part});
+      };
+      placed_.for_each_weakening(
+          flips, [&](int pixel, double share) { add_flip(pixel, -part_of(weight, share)); });
       for (const int flip : flips) {
-        const auto [at, part] = split_fine(shifted.edge(place, flip));
-        ramps.push_back({at, kernel, weight * (kFine - part)});
-        if (part != 0) ramps.push_back({at + 1, kernel, weight * part});
+        add_flip(flip, weight);
         weight = -weight;
       }
     }
@@ -252,7 +265,7 @@ RunLayer DoseFilter::operator()(std::span<const RunLayer* const> window, int lay
       const RunLayer* from = window[static_cast<std::size_t>(middle + term.layer)];
       if (from == nullptr) continue;
       if (placed_.shifts.empty()) {
-        add_ramps(*from, y, repeat_, term.y, term.scale, term.kernel, ramps);
+        add_ramps(*from, y, repeat_, placed_, term.y, term.scale, term.kernel, ramps);
       } else {
         shifted.add(*from, y, layer + term.layer, term.y, term.scale, term.kernel, ramps);
       }

@@ -42,6 +42,10 @@ struct PlacedDose {
   std::vector<MaskShift> shifts;
   // Half the width of the box whose solid share is Spot::density; in z whole layers.
   std::optional<double> density_radius_mm;
+  // What the first pixels of a line along x lack of their binder, as shares of it; of the row's
+  // first run only, or after each gap.
+  std::vector<double> weak_drops;
+  bool weak_after_gaps = false;
 
   double gain_at(const Spot& spot) const {
     double gain = 1;
@@ -61,6 +65,22 @@ struct PlacedDose {
     double sum = 0;
     for (const MaskShift& shift : shifts) sum += shift.most_mm;
     return pixels_for(sum, grid.voxel_mm(axis));
+  }
+  // Calls take(pixel, share): from this pixel of a mask row on, binder is weaker by this share of a
+  // full pixel's than just before.
+  template <class Take>
+  void for_each_weakening(std::span<const int> row, Take take) const {
+    if (weak_drops.empty()) return;
+    const std::size_t flips = weak_after_gaps ? row.size() : std::min<std::size_t>(2, row.size());
+    for (std::size_t i = 0; i < flips; i += 2) {
+      const auto count = std::min(weak_drops.size(), static_cast<std::size_t>(row[i + 1] - row[i]));
+      double before = 0;
+      for (std::size_t pixel = 0; pixel < count; ++pixel) {
+        take(row[i] + static_cast<int>(pixel), weak_drops[pixel] - before);
+        before = weak_drops[pixel];
+      }
+      take(row[i] + static_cast<int>(count), -before);
+    }
   }
   int density_layers(const Grid& grid) const {
     return density_radius_mm ? pixels_for(*density_radius_mm, grid.pitch_mm[2]) : 0;

@@ -14,8 +14,16 @@ struct CalibrationLimits {
   // look, and this share of the printed error on layers that the fit did not see.
   double most_p = 0.01;
   double least_share = 0.015;
+  // What is in a few places only has few cells to be sure from: a share as large as this may be
+  // less sure.
+  double large_share = 0.1;
+  double most_p_of_large = 0.05;
   double least_gain = 0.04;
   int most_effects = 4;
+
+  bool sure(double p, double share) const {
+    return p <= most_p || (p <= most_p_of_large && share >= large_share);
+  }
 };
 
 // `checks` are prints of the same printer that the fit never sees. `step` is told what is being

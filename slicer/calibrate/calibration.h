@@ -4,6 +4,7 @@
 #pragma once
 
 #include <array>
+#include <functional>
 #include <map>
 #include <optional>
 #include <string>
@@ -27,7 +28,12 @@ struct MeasuredJob {
   std::vector<std::vector<Shared<RunLayer>>> prints;
   // The prints come from a scanner: they may still be a little shifted, turned and blurred.
   bool scanned = false;
+  // Called many times a second during long work, from any of its threads; may throw to end it.
+  std::function<void()> on_check;
 
+  void check() const {
+    if (on_check) on_check();
+  }
   int layers() const { return static_cast<int>(masks.size()); }
 };
 

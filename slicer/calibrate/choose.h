@@ -15,14 +15,14 @@ struct Choice {
   std::vector<double> coefficients;
   double share = 0;          // of the residual's power that it takes where the fit did not look
   double p = 1;              // family-wise, over all candidates
-  bool folds_agree = false;  // at least four of five, along every axis it does not depend on
+  bool folds_agree = false;  // along every axis it does not depend on (most_agree())
   // Whether the regression cannot tell it from the winner: within one paired standard error.
   bool equal = false;
 };
 
 // `known` are columns of what is already in the model; the residual and the candidates are made
 // orthogonal to them. The best first, then the best of each other kind and dependence that takes at
-// least four fifths as much; none if there are too few points.
+// least four fifths as much; none if there are too few points or nothing takes any.
 std::vector<Choice> choose(const MeasuredJob& job, const Model& model,
                            const std::vector<SurfacePoint>& points,
                            const std::vector<std::vector<float>>& known,

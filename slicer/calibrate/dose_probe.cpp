@@ -65,17 +65,23 @@ double DoseProbe::term_dose(const Term& term, const RunLayer& mask, int layer,
     }
     const double weight = term.y.at(y) - term.y.at(y - ry);
     if (weight == 0) continue;
-    double sum = 0;
-    double sign = 1;
-    for (const int flip : flips) {
+    // The share of a flip's binder that lands at or left of the place.
+    const auto risen = [&](int flip) {
       double x = place.x_vx - flip * rx;
       if (shifted) {
         spot.x_mm = place_.origin_mm[0] + flip * grid_.pitch_mm[0];
         x -= form_.placed.shift_at(spot)[0] / grid_.voxel_mm(0);
       }
-      sum += sign * term.x.at(x);
+      return term.x.at(x);
+    };
+    double sum = 0;
+    double sign = 1;
+    for (const int flip : flips) {
+      sum += sign * risen(flip);
       sign = -sign;
     }
+    form_.placed.for_each_weakening(flips,
+                                    [&](int pixel, double share) { sum -= share * risen(pixel); });
     dose += weight * sum;
   }
   return dose * term.gain;
@@ -83,6 +89,8 @@ double DoseProbe::term_dose(const Term& term, const RunLayer& mask, int layer,
 
 void DoseProbe::margins(std::span<const RunLayer* const> window, int layer,
                         std::span<const DosePlace> places, std::span<double> out) const {
+  const ModelForm::Received received = form_.received(window, layer);
+  window = received.masks;
   const int middle = static_cast<int>(window.size()) / 2;
   std::optional<DensityField> density;
   if (form_.placed.density_radius_mm) {

@@ -8,7 +8,7 @@
 #include <cmath>
 #include <map>
 
-#include "slicer/rows.h"
+#include "slicer/calibrate/printed_error.h"
 
 namespace binderjet {
 namespace {
@@ -17,14 +17,15 @@ namespace {
 // name a place or a choice.
 double step_of(const EffectSpec& effect, const std::string& name, double value) {
   static const std::map<std::string, double> steps = {
-      {"level", 0.005}, {"width_mm", -0.02}, {"share", 0.01},       {"strength", 0.02},
-      {"by_mm", 0.002}, {"by", 0.0003},      {"height_mm", -0.05},  {"amount", 0.005},
-      {"wave", 0.003},  {"per_mm2", 0.0002}, {"period", -0.002},    {"period_mm", -0.002},
-      {"width", -0.05}, {"center_mm", 0.05}, {"direction_deg", 0.5}};
-  if (name == "radius_mm") return 0.05 * value;
+      {"level", 0.005}, {"width_mm", -0.02},  {"share", 0.01},      {"strength", 0.02},
+      {"by_mm", 0.002}, {"by", 0.0003},       {"height_mm", -0.05}, {"amount", 0.005},
+      {"wave", 0.003},  {"per_mm2", 0.0002},  {"period", -0.002},   {"period_mm", -0.002},
+      {"width", -0.05}, {"length_mm", -0.05}, {"center_mm", 0.05},  {"direction_deg", 0.5}};
+  if (name == "radius_mm") return effect.kind == "density" ? 0.05 * value : 0;  // wear has no dose
   if (name == "per_mm") return effect.kind == "registration_drift" ? 0.0005 : 0.001;
   if (name == "center_mm" && effect.kind == "grad_bed") return 0;
   if (name == "width_mm" && effect.kind == "survive") return 0;
+  if (name == "share" && effect.kind == "recoat_compress") return 0;
   if (name == "period" && value == 2) return 0;
   if (name == "direction_deg" && std::fmod(value, 90) == 0) return 0;
   const auto found = steps.find(name);
@@ -34,16 +35,6 @@ double step_of(const EffectSpec& effect, const std::string& name, double value) 
 
 double& number_of(Model& model, const FreeNumber& free) {
   return model[free.effect].numbers.at(free.name)[free.index];
-}
-
-std::int64_t differences(const RunLayer& a, const RunLayer& b) {
-  std::int64_t sum = 0;
-  std::vector<int> row;
-  for (int y = 0; y < a.height(); ++y) {
-    rows::difference(a.row(y), b.row(y), row);
-    for (std::size_t i = 0; i < row.size(); i += 2) sum += row[i + 1] - row[i];
-  }
-  return sum;
 }
 
 bool valid(const Model& model) {
@@ -133,20 +124,6 @@ std::vector<std::vector<float>> scanner_columns(const MeasuredJob& job, const Mo
     out[3].push_back(static_cast<float>(blur));
   }
   return out;
-}
-
-double wrong_share(const MeasuredJob& job, const Model& model, const LayerChoice& layers) {
-  const auto printed = print_layers(job, model, layers);
-  std::int64_t wrong = 0;
-  std::int64_t solid = 0;
-  for (std::size_t k = 0; k < printed.size(); ++k) {
-    if (printed[k] == nullptr) continue;
-    for (const auto& print : job.prints) {
-      wrong += differences(*printed[k], *print[k]);
-      solid += print[k]->count();
-    }
-  }
-  return static_cast<double>(wrong) / std::max<double>(1, static_cast<double>(solid));
 }
 
 Model refit(const MeasuredJob& job, Model model, const std::vector<FreeNumber>& numbers,

@@ -30,9 +30,6 @@ std::vector<std::vector<float>> slopes(const MeasuredJob& job, const Model& mode
 std::vector<std::vector<float>> scanner_columns(const MeasuredJob& job, const Model& model,
                                                 const std::vector<SurfacePoint>& points);
 
-// |printed xor measured| / |measured| over the chosen layers, mean of the replicates.
-double wrong_share(const MeasuredJob& job, const Model& model, const LayerChoice& layers);
-
 // The model with these numbers refitted on the chosen layers in at most `rounds` steps; never worse
 // there than it was.
 Model refit(const MeasuredJob& job, Model model, const std::vector<FreeNumber>& numbers,

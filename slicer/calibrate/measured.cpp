@@ -192,7 +192,7 @@ RunLayer resampled(const GreyPlane& plane, const Pose& pose, const StackInfo& fr
 }  // namespace
 
 Measured read_measured(const std::string& folder, const StackInfo& frame,
-                       std::span<const RunLayer> predicted) {
+                       std::span<const RunLayer> predicted, const std::function<void()>& check) {
   const StackReader reader(folder);
   if (reader.info().kind == StackKind::kColor) {
     throw Error(ErrorKind::kBadInput, folder, "is a stack of colors; a measured one is needed");
@@ -200,16 +200,20 @@ Measured read_measured(const std::string& folder, const StackInfo& frame,
   Measured measured;
   measured.layers.resize(static_cast<std::size_t>(frame.size[2]));
   const auto for_layers = [&](auto make) {
-    oneapi::tbb::parallel_for(
-        0, frame.size[2], [&](int k) { measured.layers[static_cast<std::size_t>(k)] = make(k); });
+    oneapi::tbb::parallel_for(0, frame.size[2], [&](int k) {
+      if (check) check();
+      measured.layers[static_cast<std::size_t>(k)] = make(k);
+    });
   };
   measured.greys = find_greys(reader);
   if (const auto grid = on_grid(reader.info(), frame)) {
     for_layers([&](int k) { return layer_on_grid(reader, *grid, frame, k); });
     return measured;
   }
-  const Scan scan{reader.info(),
-                  [&](int image) { return read_plane(reader, measured.greys, image); }};
+  const Scan scan{reader.info(), [&](int image) {
+                    if (check) check();
+                    return read_plane(reader, measured.greys, image);
+                  }};
   measured.registration = register_scan(scan, predicted, frame, folder);
   const Pose& pose = measured.registration->pose;
   // White noise falls by 2 sqrt(pi) deviations of the blur, in samples.

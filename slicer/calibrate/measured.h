@@ -2,6 +2,7 @@
 // What came out of the powder, on the voxel grid of the job: a scan registered and resampled.
 #pragma once
 
+#include <functional>
 #include <optional>
 #include <span>
 #include <string>
@@ -34,8 +35,10 @@ struct Measured {
 // and may be shifted and turned; what it does not cover reads as powder. Greys between the centres
 // of samples are interpolated and the surface is where they pass half, so edges keep their place to
 // a fraction of a sample. Noise beyond a tenth of the contrast is blurred to that first, or it
-// would strew voxels. Error{kBadInput} for a folder that is no such stack.
+// would strew voxels. Error{kBadInput} for a folder that is no such stack. `check`, if it is given,
+// is called before each image is read, from any thread; it may throw to end the work.
 Measured read_measured(const std::string& folder, const StackInfo& frame,
-                       std::span<const RunLayer> predicted);
+                       std::span<const RunLayer> predicted,
+                       const std::function<void()>& check = {});
 
 }  // namespace binderjet

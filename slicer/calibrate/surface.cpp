@@ -94,6 +94,16 @@ LayerPoints pair_layer(const MeasuredJob& job, int index, const RunLayer& printe
   return out;
 }
 
+std::vector<const RunLayer*> window_of(const std::vector<Shared<RunLayer>>& layers, int index,
+                                       int reach) {
+  const int count = static_cast<int>(layers.size());
+  std::vector<const RunLayer*> window;
+  for (int k = index - reach; k <= index + reach; ++k) {
+    window.push_back(k < 0 || k >= count ? nullptr : layers[static_cast<std::size_t>(k)].get());
+  }
+  return window;
+}
+
 DoseProbe probe_of(const MeasuredJob& job, const std::vector<EffectSpec>& model) {
   return {PrinterModel(model, job.grid, job.place).form(), job.grid, job.place};
 }
@@ -101,26 +111,44 @@ DoseProbe probe_of(const MeasuredJob& job, const std::vector<EffectSpec>& model)
 }  // namespace
 
 std::vector<const RunLayer*> mask_window(const MeasuredJob& job, int index, int reach) {
-  std::vector<const RunLayer*> window;
-  for (int k = index - reach; k <= index + reach; ++k) {
-    window.push_back(k < 0 || k >= job.layers() ? nullptr
-                                                : job.masks[static_cast<std::size_t>(k)].get());
-  }
-  return window;
+  return window_of(job.masks, index, reach);
+}
+
+std::vector<Shared<RunLayer>> bound_layers(const MeasuredJob& job, const PrinterModel& printer,
+                                           const LayerChoice& layers) {
+  const int around = printer.wear_reach();
+  std::vector<Shared<RunLayer>> bound(job.masks.size());
+  oneapi::tbb::parallel_for(0, job.layers(), [&](int index) {
+    const auto first = layers.begin() + std::max(0, index - around);
+    const auto last = layers.begin() + std::min(job.layers(), index + around + 1);
+    if (std::find(first, last, true) == last) return;
+    job.check();
+    const auto window = mask_window(job, index, printer.bind_reach());
+    bound[static_cast<std::size_t>(index)] =
+        std::make_shared<const RunLayer>(printer.bind(window, job.first_layer + index));
+  });
+  return bound;
+}
+
+std::vector<Shared<RunLayer>> worn_layers(const MeasuredJob& job, const PrinterModel& printer,
+                                          const std::vector<Shared<RunLayer>>& bound,
+                                          const LayerChoice& layers) {
+  std::vector<Shared<RunLayer>> out(job.masks.size());
+  oneapi::tbb::parallel_for(0, job.layers(), [&](int index) {
+    if (!layers[static_cast<std::size_t>(index)]) return;
+    job.check();
+    out[static_cast<std::size_t>(index)] = std::make_shared<const RunLayer>(
+        printer.worn(window_of(bound, index, printer.wear_reach())));
+  });
+  return out;
 }
 
 std::vector<Shared<RunLayer>> print_layers(const MeasuredJob& job,
                                            const std::vector<EffectSpec>& model,
                                            const LayerChoice& layers) {
   const PrinterModel printer(model, job.grid, job.place);
-  std::vector<Shared<RunLayer>> out(job.masks.size());
-  oneapi::tbb::parallel_for(0, job.layers(), [&](int index) {
-    if (!layers[static_cast<std::size_t>(index)]) return;
-    const auto window = mask_window(job, index, printer.window_reach());
-    out[static_cast<std::size_t>(index)] = std::make_shared<const RunLayer>(
-        printer.print(std::span<const RunLayer* const>(window), job.first_layer + index));
-  });
-  return out;
+  auto bound = bound_layers(job, printer, layers);
+  return printer.form().wear.empty() ? bound : worn_layers(job, printer, bound, layers);
 }
 
 std::vector<SurfacePoint> surface_points(const MeasuredJob& job,
@@ -137,23 +165,31 @@ std::vector<SurfacePoint> surface_points(const MeasuredJob& job,
   const auto keep_below = static_cast<std::uint32_t>(keep * 4294967295.0);
   const std::array<int, 2> reach_vx{pixels_for(reach_mm, job.grid.voxel_mm(0)),
                                     pixels_for(reach_mm, job.grid.voxel_mm(1))};
-  const DoseProbe probe = probe_of(job, model);
+  const PrinterModel printer(model, job.grid, job.place);
+  const bool worn = !printer.form().wear.empty();
+  const DoseProbe probe(printer.form(), job.grid, job.place);
   std::vector<LayerPoints> of_layer(printed.size());
   oneapi::tbb::parallel_for(0, job.layers(), [&](int index) {
     const auto& layer = printed[static_cast<std::size_t>(index)];
     if (layer == nullptr) return;
     LayerPoints& mine = of_layer[static_cast<std::size_t>(index)];
     mine = pair_layer(job, index, *layer, reach_vx, keep_below);
+    job.check();
     const std::size_t replicates = job.prints.size();
     std::vector<DosePlace> places;
     for (std::size_t i = 0; i < mine.offsets.size(); ++i) {
       places.push_back(mine.points[i / replicates].place(mine.offsets[i]));
     }
+    // Where the part wears off, its surface is not where the dose is the level.
+    if (worn) {
+      for (const SurfacePoint& point : mine.points) places.push_back(point.place());
+    }
     std::vector<double> margins(places.size());
     const auto window = mask_window(job, index, probe.window_reach());
     probe.margins(window, job.first_layer + index, places, margins);
-    for (std::size_t i = 0; i < margins.size(); ++i) {
+    for (std::size_t i = 0; i < mine.offsets.size(); ++i) {
       SurfacePoint& point = mine.points[i / replicates];
+      if (worn) margins[i] -= margins[mine.offsets.size() + i / replicates];
       point.missing -= margins[i] / static_cast<double>(replicates);
       point.offset_vx += mine.offsets[i] / static_cast<double>(replicates);
     }
@@ -178,6 +214,7 @@ std::vector<double> margins_at(const MeasuredJob& job, const std::vector<EffectS
     const std::size_t first = begin[static_cast<std::size_t>(index)];
     const std::size_t last = begin[static_cast<std::size_t>(index) + 1];
     if (first == last) return;
+    job.check();
     std::vector<DosePlace> places;
     for (std::size_t i = first; i < last; ++i) {
       DosePlace place = points[i].place();

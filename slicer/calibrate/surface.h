@@ -42,6 +42,14 @@ std::vector<Shared<RunLayer>> print_layers(const MeasuredJob& job,
                                            const std::vector<EffectSpec>& model,
                                            const LayerChoice& layers);
 
+// The same in two steps: what is bound, also of layers that the wear of the chosen ones takes, and
+// what wear leaves of the chosen ones.
+std::vector<Shared<RunLayer>> bound_layers(const MeasuredJob& job, const PrinterModel& printer,
+                                           const LayerChoice& layers);
+std::vector<Shared<RunLayer>> worn_layers(const MeasuredJob& job, const PrinterModel& printer,
+                                          const std::vector<Shared<RunLayer>>& bound,
+                                          const LayerChoice& layers);
+
 // At most about `most_points` edges, picked evenly by a hash of their place, so that the same job
 // gives the same points. Edges without a measured partner within `reach_mm` are left out.
 std::vector<SurfacePoint> surface_points(const MeasuredJob& job,

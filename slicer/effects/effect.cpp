@@ -9,17 +9,23 @@
 #include "slicer/effects/density.h"
 #include "slicer/effects/empirical.h"
 #include "slicer/effects/fill.h"
+#include "slicer/effects/first_drops.h"
 #include "slicer/effects/first_layers.h"
 #include "slicer/effects/grad_bed.h"
 #include "slicer/effects/grad_z.h"
+#include "slicer/effects/infiltrant.h"
 #include "slicer/effects/jet_out.h"
+#include "slicer/effects/jitter.h"
 #include "slicer/effects/layer_shift_low.h"
 #include "slicer/effects/parity.h"
 #include "slicer/effects/pause.h"
+#include "slicer/effects/recoat_compress.h"
+#include "slicer/effects/recoat_streak.h"
 #include "slicer/effects/registration_drift.h"
 #include "slicer/effects/rounding.h"
 #include "slicer/effects/scale_xyz.h"
 #include "slicer/effects/shift.h"
+#include "slicer/effects/slice_dropout.h"
 #include "slicer/effects/spread.h"
 #include "slicer/effects/survive.h"
 #include "slicer/effects/tail.h"
@@ -87,6 +93,7 @@ const std::vector<EffectKind>& effect_kinds() {
       registration_drift_kind(),
       layer_shift_low_kind(),
       parity_kind(),
+      jitter_kind(),
       scale_xyz_kind(),
       grad_bed_kind(),
       grad_z_kind(),
@@ -94,6 +101,11 @@ const std::vector<EffectKind>& effect_kinds() {
       first_layers_kind(),
       band_swath_kind(),
       jet_out_kind(),
+      recoat_streak_kind(),
+      first_drops_kind(),
+      slice_dropout_kind(),
+      recoat_compress_kind(),
+      infiltrant_kind(),
       empirical_kind(),
   };
   return kinds;

@@ -56,7 +56,35 @@ Reach ModelForm::reach(const Grid& grid) const {
   }
   reach.layers_below = std::max(reach.layers_below, placed.density_layers(grid));
   reach.layers_above = std::max(reach.layers_above, placed.density_layers(grid));
+  for (const Wear& step : wear) {
+    for (std::size_t axis = 0; axis < 2; ++axis) reach.xy_vx[axis] += step.reach.xy_vx[axis];
+    reach.layers_below += step.reach.layers_below;
+    reach.layers_above += step.reach.layers_above;
+  }
+  for (const LayerMove& move : moves) {
+    reach.layers_below += move.most;
+    reach.layers_above += move.most;
+  }
   return reach;
+}
+
+ModelForm::Received ModelForm::received(std::span<const RunLayer* const> window, int layer) const {
+  Received out{{window.begin(), window.end()}, nullptr};
+  if (moves.empty()) return out;
+  const int count = static_cast<int>(window.size());
+  for (int i = 0; i < count; ++i) {
+    int from = i;
+    for (const LayerMove& move : moves) from += move.by(layer + i - count / 2);
+    out.masks[static_cast<std::size_t>(i)] =
+        from < 0 || from >= count ? nullptr : window[static_cast<std::size_t>(from)];
+  }
+  const std::size_t middle = window.size() / 2;
+  if (out.masks[middle] == nullptr && window[middle] != nullptr) {
+    out.powder = std::make_shared<const RunLayer>(
+        RunLayer::powder(window[middle]->width(), window[middle]->height()));
+    out.masks[middle] = out.powder.get();
+  }
+  return out;
 }
 
 PrinterModel::PrinterModel(const std::vector<EffectSpec>& effects, const Grid& grid,
@@ -79,7 +107,8 @@ void PrinterModel::choose_filter(const Grid& grid, const JobPlace& place) {
   const DoseTerm& first = form_.terms.front();
   const auto x = as_box(first.x);
   const auto y = as_box(first.y);
-  const bool anywhere = form_.placed.gains.empty() && form_.placed.shifts.empty();
+  const PlacedDose& placed = form_.placed;
+  const bool anywhere = placed.gains.empty() && placed.shifts.empty() && placed.weak_drops.empty();
   if (form_.terms.size() == 1 && first.layer == 0 && first.gain == 1 && x && y && anywhere) {
     box_ = OneBox{*x, *y, least_sum(*x, *y, form_.level)};
   } else {
@@ -87,12 +116,53 @@ void PrinterModel::choose_filter(const Grid& grid, const JobPlace& place) {
   }
 }
 
-RunLayer PrinterModel::print(std::span<const RunLayer* const> window, int layer) const {
-  RunLayer printed =
-      box_ ? box_threshold(*window[window.size() / 2], repeat_, box_->x, box_->y, box_->least)
-           : (*filter_)(window, layer);
+RunLayer PrinterModel::bind(std::span<const RunLayer* const> window, int layer) const {
+  const ModelForm::Received masks = form_.received(window, layer);
+  RunLayer printed = box_ ? box_threshold(*masks.masks[masks.masks.size() / 2], repeat_, box_->x,
+                                          box_->y, box_->least)
+                          : (*filter_)(masks.masks, layer);
   for (const std::array<int, 2>& box : form_.survive_vx) printed = opening(printed, box);
   return printed;
+}
+
+int PrinterModel::wear_reach() const {
+  int reach = 0;
+  for (const Wear& step : form_.wear) reach += step.reach.layers_below;
+  return reach;
+}
+
+RunLayer PrinterModel::worn(std::span<const RunLayer* const> bound) const {
+  std::vector<const RunLayer*> layers(bound.begin(), bound.end());
+  std::vector<RunLayer> done;
+  for (const Wear& step : form_.wear) {
+    const auto span = 2 * static_cast<std::size_t>(step.reach.layers_below) + 1;
+    const std::size_t count = layers.size() - span + 1;
+    std::vector<RunLayer> next(count);
+    std::vector<const RunLayer*> next_layers(count, nullptr);
+    for (std::size_t first = 0; first < count; ++first) {
+      if (layers[first + span / 2] == nullptr) continue;
+      next[first] = step.apply(std::span<const RunLayer* const>(layers).subspan(first, span));
+      next_layers[first] = &next[first];
+    }
+    done = std::move(next);
+    layers = std::move(next_layers);
+  }
+  return std::move(done.front());
+}
+
+RunLayer PrinterModel::print(std::span<const RunLayer* const> window, int layer) const {
+  const int around = wear_reach();
+  const auto count = 2 * static_cast<std::size_t>(bind_reach()) + 1;
+  if (form_.wear.empty()) return bind(window, layer);
+  std::vector<RunLayer> bound(2 * static_cast<std::size_t>(around) + 1);
+  std::vector<const RunLayer*> layers(bound.size(), nullptr);
+  for (std::size_t i = 0; i < bound.size(); ++i) {
+    const auto part = window.subspan(i, count);
+    if (part[count / 2] == nullptr) continue;
+    bound[i] = bind(part, layer + static_cast<int>(i) - around);
+    layers[i] = &bound[i];
+  }
+  return worn(layers);
 }
 
 RunLayer PrinterModel::print(std::span<const Shared<RunLayer>> window, int layer) const {

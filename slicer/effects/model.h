@@ -4,6 +4,8 @@
 
 #include <array>
 #include <cstdint>
+#include <functional>
+#include <memory>
 #include <optional>
 #include <span>
 #include <vector>
@@ -16,6 +18,19 @@
 
 namespace binderjet {
 
+// Layer k gets the mask of layer k + by(k), |by| <= most, both in layers of the job.
+struct LayerMove {
+  std::function<int(int)> by;
+  int most;
+};
+
+// What happens to printed voxels once they are bound: a layer from the printed layers around it,
+// as many below as above; null is beyond the job.
+struct Wear {
+  Reach reach;
+  std::function<RunLayer(std::span<const RunLayer* const>)> apply;
+};
+
 // What the effects of a model add up to. Each effect's forward form writes its share into it, so
 // simulate, enhance and calibrate know this form and no effect by name.
 struct ModelForm {
@@ -24,6 +39,9 @@ struct ModelForm {
   double level = 0;  // a voxel is bound iff its dose is at least this; 0: no effect has said so
   // Bound powder that holds no such box (voxels in x and y) is brushed off.
   std::vector<std::array<int, 2>> survive_vx;
+  // In their order, after that.
+  std::vector<Wear> wear;
+  std::vector<LayerMove> moves;
   // What depends on the place on the bed, in mm; `place` is where the job is on it.
   PlacedDose placed;
   JobPlace place;
@@ -36,6 +54,14 @@ struct ModelForm {
   // Declares the level; Error{kBadInput} if another effect already has.
   void bind_at(double new_level);
   Reach reach(const Grid& grid) const;
+
+  // The masks that layers around layer `layer` really get. Those whose mask is beyond the window
+  // get null; if the middle one is, it gets `powder`.
+  struct Received {
+    std::vector<const RunLayer*> masks;
+    std::shared_ptr<const RunLayer> powder;
+  };
+  Received received(std::span<const RunLayer* const> window, int layer) const;
 };
 
 class PrinterModel {
@@ -58,6 +84,14 @@ class PrinterModel {
   RunLayer print(std::span<const Shared<RunLayer>> window, int layer = 0) const;
   // The same for a layer between layers of powder.
   RunLayer print(const RunLayer& mask) const;
+
+  // print() in two steps, so that who wants all layers need not bind each of them many times:
+  // what is bound, from the middle bind_reach() layers of such a window ...
+  int bind_reach() const { return window_reach() - wear_reach(); }
+  RunLayer bind(std::span<const RunLayer* const> window, int layer) const;
+  // ... and what is left of that, from wear_reach() bound layers below, its own, and as many above.
+  int wear_reach() const;
+  RunLayer worn(std::span<const RunLayer* const> bound) const;
 
  private:
   // Most models are one box (the paper's is), which has a faster way.

@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Rounding: edges and corners wear off, as if the dose were smoothed once more in all directions.
+// Rounding: handling and compressed air wear off the edges and corners of the printed part.
 //
-//   radius_mm: the smoothing's standard deviation, along x, y and z
+//   shape = "ball": what no ball of radius_mm fits into is gone (morphological opening)
+//         | "gaussian": the part is smoothed with this standard deviation along x, y and z, and
+//           solid from a half on: convex edges wear off, concave ones fill
 #pragma once
 
 #include "slicer/effects/effect.h"

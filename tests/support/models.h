@@ -4,10 +4,10 @@
 
 #include <cmath>
 #include <fstream>
-#include <map>
 #include <string>
 #include <utility>
 
+#include "slicer/coupon_shapes.h"
 #include "slicer/mesh/mesh.h"
 
 namespace binderjet::models {
@@ -45,33 +45,7 @@ Mesh blob(int rounds, Radius radius) {
   mesh.points = {{1, 0, 0}, {-1, 0, 0}, {0, 1, 0}, {0, -1, 0}, {0, 0, 1}, {0, 0, -1}};
   mesh.triangles = {{0, 2, 4}, {2, 1, 4}, {1, 3, 4}, {3, 0, 4},
                     {2, 0, 5}, {1, 2, 5}, {3, 1, 5}, {0, 3, 5}};
-  for (int round = 0; round < rounds; ++round) {
-    std::map<std::pair<int, int>, int> middles;
-    const auto middle = [&](int a, int b) {
-      const auto [place, added] = middles.try_emplace(std::minmax(a, b), 0);
-      if (added) {
-        Point m{};
-        double length = 0;
-        for (std::size_t axis = 0; axis < 3; ++axis) {
-          m[axis] = mesh.points[static_cast<std::size_t>(a)][axis] +
-                    mesh.points[static_cast<std::size_t>(b)][axis];
-          length += m[axis] * m[axis];
-        }
-        for (double& value : m) value /= std::sqrt(length);
-        place->second = static_cast<int>(mesh.points.size());
-        mesh.points.push_back(m);
-      }
-      return place->second;
-    };
-    std::vector<Triangle> finer;
-    for (const Triangle& t : mesh.triangles) {
-      const int ab = middle(t[0], t[1]);
-      const int bc = middle(t[1], t[2]);
-      const int ca = middle(t[2], t[0]);
-      finer.insert(finer.end(), {{t[0], ab, ca}, {ab, t[1], bc}, {ca, bc, t[2]}, {ab, bc, ca}});
-    }
-    mesh.triangles = std::move(finer);
-  }
+  for (int round = 0; round < rounds; ++round) split_unit_ball(mesh);
   for (Point& point : mesh.points) {
     const double r = radius(point);
     for (double& value : point) value *= r;

@@ -11,7 +11,6 @@ namespace binderjet::whole {
 // With numbers that show on a part of 3 x 2 mm.
 inline std::vector<EffectSpec> one_of_each() {
   return {{"tail", {}, {{"share", {0.3}}, {"width_mm", {0.8, 1.2}}}},
-          {"rounding", {}, {{"radius_mm", {0.12}}}},
           {"z_bleed_down", {}, {{"share", {0.4}}}},
           {"z_wick_up", {}, {{"share", {0.3}}}},
           {"density", {}, {{"strength", {0.5}}, {"radius_mm", {0.4}}, {"reference", {0.3}}}},
@@ -26,6 +25,13 @@ inline std::vector<EffectSpec> one_of_each() {
           {"first_layers", {}, {{"amount", {0.5}}, {"height_mm", {0.2}}}},
           {"band_swath", {}, {{"direction_deg", {30}}, {"period_mm", {1.3}}, {"wave", {0.2, 0.1}}}},
           {"jet_out", {}, {{"from_mm", {0.8}}, {"to_mm", {1.2}}, {"amount", {-0.5}}}},
+          {"recoat_streak",
+           {{"across", "y"}},
+           {{"from_mm", {5.8}}, {"to_mm", {6.2}}, {"at_mm", {0.2}}, {"amount", {-0.5}}}},
+          {"first_drops", {{"after", "line"}}, {{"amount", {0.7}}, {"length_mm", {0.2}}}},
+          {"first_drops", {{"after", "gap"}}, {{"amount", {0.4}}, {"length_mm", {0.5}}}},
+          {"slice_dropout", {}, {{"at_mm", {0.2}}, {"layers", {1}}}},
+          {"recoat_compress", {}, {{"share", {0.15}}}},
           {"empirical",
            {{"acts", "shift_x"}, {"axis", "y"}, {"form", "periodic"}},
            {{"period", {0.9}}, {"wave", {0.1, 0.05}}}},

@@ -12,6 +12,7 @@
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
+#include <functional>
 #include <iterator>
 #include <nlohmann/json.hpp>
 #include <string>
@@ -47,9 +48,9 @@ class Workplace {
   std::string operator/(const std::string& name) const { return (folder_ / name).string(); }
 
   // `words` follow the program's name; more than `seconds` of computing or `memory_mb` of address
-  // space end it.
-  Ran run(const std::vector<std::string>& words, unsigned seconds = 600,
-          std::size_t memory_mb = 0) const {
+  // space end it. `meanwhile` is called once it runs.
+  Ran run(const std::vector<std::string>& words, unsigned seconds = 600, std::size_t memory_mb = 0,
+          const std::function<void(pid_t)>& meanwhile = {}) const {
     Ran ran;
     const auto start = std::chrono::steady_clock::now();
     const pid_t child = fork();
@@ -66,6 +67,7 @@ class Workplace {
       execv(argv[0], argv.data());
       _exit(127);
     }
+    if (meanwhile) meanwhile(child);
     int status = 0;
     rusage usage{};
     wait4(child, &status, 0, &usage);

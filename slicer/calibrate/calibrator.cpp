@@ -1,0 +1,295 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "slicer/calibrate/calibrator.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "slicer/calibrate/jitter.h"
+#include "slicer/calibrate/sign_flips.h"
+
+namespace binderjet {
+namespace {
+
+constexpr int kLastRounds = 4;
+
+// A quarter of the layers, none of them at a distance that an effect could follow.
+LayerChoice held_out_layers(const MeasuredJob& job) {
+  LayerChoice out;
+  for (int k = 0; k < job.layers(); ++k) {
+    auto h = static_cast<std::uint32_t>(job.first_layer + k) * 0x9e3779b1U;
+    h ^= h >> 15;
+    h *= 0x2c1b3c6dU;
+    h ^= h >> 13;
+    out.push_back((h & 3U) == 0);
+  }
+  if (std::none_of(out.begin(), out.end(), [](bool held) { return held; })) out.back() = true;
+  return out;
+}
+
+LayerChoice others(LayerChoice layers) {
+  layers.flip();
+  return layers;
+}
+
+}  // namespace
+
+Calibrator::Calibrator(const MeasuredJob& job, const Model& declared,
+                       const CalibrationLimits& limits,
+                       const std::function<void(const std::string&)>& step)
+    : job_(job),
+      limits_(limits),
+      step_(step),
+      held_(held_out_layers(job)),
+      seen_(others(held_)),
+      model_(declared),
+      declared_effects_(declared.size()),
+      first_wrong_(wrong_share(job, declared, held_)),
+      wrong_(first_wrong_) {}
+
+void Calibrator::run() {
+  while (static_cast<int>(taken_.size()) < limits_.most_effects && add_one()) {
+  }
+  drop_superseded();
+  if (!taken_.empty()) refit_all();
+  look_for_jitter();
+}
+
+std::vector<FoundEffect> Calibrator::effects() const {
+  std::vector<FoundEffect> out;
+  for (const Taken& taken : taken_) {
+    out.push_back(taken.found);
+    FoundEffect& found = out.back();
+    const EffectSpec& spec = model_[taken.effect];
+    found.parameters = spec.numbers;
+    // The covariate's own figures are the refitted ones.
+    const auto copy = [&](const char* from, const char* to) {
+      if (found.covariate.numbers.contains(to) && spec.numbers.contains(from)) {
+        found.covariate.numbers[to] = spec.numbers.at(from);
+      }
+    };
+    copy("period_mm", "period_mm");
+    copy("period", found.covariate.axis == "layer" ? "period_layers" : "period_mm");
+    copy("direction_deg", "direction_deg");
+    copy("center_mm", "centre_mm");
+  }
+  return out;
+}
+
+std::vector<FreeNumber> Calibrator::numbers_of_taken() const {
+  std::vector<FreeNumber> out;
+  for (const Taken& taken : taken_) {
+    const auto numbers = free_numbers(model_, taken.effect);
+    out.insert(out.end(), numbers.begin(), numbers.end());
+  }
+  return out;
+}
+
+std::vector<std::vector<float>> Calibrator::known_columns(
+    const std::vector<SurfacePoint>& points) const {
+  auto known = slopes(job_, model_, points, numbers_of_taken());
+  for (auto& column : scanner_columns(job_, model_, points)) known.push_back(std::move(column));
+  return known;
+}
+
+bool Calibrator::add_one() {
+  step_(fmt::format("looking for effect {}", taken_.size() + 1));
+  std::vector<Fitted> fitted = regressed();
+  for (Fitted& one : tried()) fitted.push_back(std::move(one));
+  return !fitted.empty() && take_best(std::move(fitted));
+}
+
+// What the residual in dose points to. The regression is linear and blind to what was fused or
+// lost; the real forward model decides among those that it cannot part by far.
+std::vector<Calibrator::Fitted> Calibrator::regressed() {
+  constexpr std::size_t kMostTried = 4;
+  constexpr int kTrialRounds = 3;
+  std::vector<Candidate> candidates = named_candidates(job_, model_);
+  std::vector<Candidate> scan = scan_candidates(job_, model_);
+  candidates.insert(candidates.end(), scan.begin(), scan.end());
+  const auto points = surface_points(job_, model_, seen_, kChoicePoints, kPairReachMm);
+  const std::vector<Choice> choices =
+      choose(job_, model_, points, known_columns(points), candidates);
+  if (choices.empty()) return {};
+  const Choice& best = choices.front();
+  const Candidate& winner = candidates[best.winner];
+  remaining_ = Remaining{winner.covariate, std::max(0.0, best.share)};
+  step_(fmt::format("best is {} of {} ({}): {:.3f} of the residual, p {:.3f}", winner.kind,
+                    winner.covariate.axis, winner.covariate.form, best.share, best.p));
+  if (!limits_.sure(best.p, best.share) || best.share < limits_.least_share || !best.folds_agree)
+    return {};
+  untried_equals_.clear();
+  std::vector<Fitted> out;
+  for (std::size_t i = 0; i < choices.size(); ++i) {
+    if (i >= kMostTried) {
+      if (choices[i].equal) untried_equals_.push_back(candidates[choices[i].winner].kind);
+      continue;
+    }
+    Fitted one{
+        candidates[choices[i].winner], {}, choices[i].p, choices[i].share, choices[i].equal, {}};
+    one.model = refit_with_taken(one.candidate.apply(choices[i].coefficients), one.candidate.effect,
+                                 kTrialRounds);
+    out.push_back(std::move(one));
+  }
+  return out;
+}
+
+// What only the printed voxels show.
+std::vector<Calibrator::Fitted> Calibrator::tried() {
+  constexpr std::size_t kMostTried = 2;
+  std::vector<Fitted> out;
+  for (Trial& trial : try_effects(job_, model_, seen_)) {
+    if (out.size() == kMostTried) break;
+    if (!limits_.sure(trial.p, trial.share) || trial.share < limits_.least_gain ||
+        !trial.folds_agree) {
+      continue;
+    }
+    step_(fmt::format("tried {}: {:.3f} of the wrong voxels, p {:.3f}", trial.candidate.kind,
+                      trial.share, trial.p));
+    Fitted one{std::move(trial.candidate), {}, trial.p, trial.share, false, {}};
+    one.model = with_places_fitted(job_, std::move(trial.model), one.candidate.effect, seen_);
+    out.push_back(std::move(one));
+  }
+  return out;
+}
+
+bool Calibrator::take_best(std::vector<Fitted> fitted) {
+  for (Fitted& one : fitted) {
+    one.counts = counts_of(one.model);
+    step_(fmt::format("fitted {}: {:.3f} of the residual, {} voxels wrong", one.candidate.kind,
+                      one.share, sum_of(one.counts)));
+  }
+  // A hundredth is no reason to prefer what is less simple or has no name.
+  constexpr double kClearly = 0.985;
+  std::size_t best = 0;
+  for (std::size_t i = 1; i < fitted.size(); ++i) {
+    const auto wrong = static_cast<double>(sum_of(fitted[i].counts));
+    if (wrong < kClearly * static_cast<double>(sum_of(fitted[best].counts))) best = i;
+  }
+  const Candidate& candidate = fitted[best].candidate;
+  Model model = with_places_fitted(job_, fitted[best].model, candidate.effect, seen_);
+  model = refit_with_taken(std::move(model), candidate.effect, kLastRounds);
+  const double wrong = wrong_share(job_, model, held_);
+  const bool enough = wrong_ - wrong >= limits_.least_gain * wrong_ &&
+                      wrong_ - wrong >= limits_.least_gain / 2 * first_wrong_;
+  step_(fmt::format("{}: printed error {:.5f} to {:.5f} on layers not seen", candidate.kind, wrong_,
+                    wrong));
+  if (!enough) return false;
+
+  Taken taken;
+  taken.found.kind = candidate.kind;
+  taken.found.covariate = candidate.covariate;
+  taken.found.p = fitted[best].p;
+  taken.found.heldout_gain = fitted[best].share;
+  taken.found.rivals = rivals_of(fitted, best);
+  taken.effect = candidate.effect;
+  taken_.push_back(std::move(taken));
+  model_ = std::move(model);
+  wrong_ = wrong;
+  remaining_.reset();
+  return true;
+}
+
+// Names that neither the printed voxels nor, if these are nearly as many, the residual can tell
+// from the best. An effect without a name is no rival: it says no more than the residual does.
+std::vector<std::string> Calibrator::rivals_of(const std::vector<Fitted>& fitted,
+                                               std::size_t best) const {
+  constexpr double kNearly = 1.015;
+  const WrongCounts before = counts_of(model_);
+  const std::vector<double> gain = gains(before, fitted[best].counts);
+  const auto fewest = static_cast<double>(sum_of(fitted[best].counts));
+  std::vector<std::string> out;
+  const auto add = [&](const std::string& kind) {
+    const bool known = std::find(out.begin(), out.end(), kind) != out.end();
+    if (!known && kind != fitted[best].candidate.kind && kind != "empirical") out.push_back(kind);
+  };
+  for (const Fitted& other : fitted) {
+    const bool nearly = static_cast<double>(sum_of(other.counts)) <= kNearly * fewest;
+    if (alike(gain, gains(before, other.counts)) || (other.equal && nearly)) {
+      add(other.candidate.kind);
+    }
+  }
+  if (fitted[best].equal) std::for_each(untried_equals_.begin(), untried_equals_.end(), add);
+  return out;
+}
+
+WrongCounts Calibrator::counts_of(const Model& model) const {
+  return wrong_counts(job_, print_layers(job_, model, seen_));
+}
+
+Model Calibrator::refit_with_taken(Model model, std::size_t effect, int rounds) const {
+  std::vector<FreeNumber> numbers = numbers_of_taken();
+  const auto own = free_numbers(model, effect);
+  numbers.insert(numbers.end(), own.begin(), own.end());
+  return refit(job_, model, numbers, seen_, rounds);
+}
+
+// What was found first may stand for a part of what was found later; it goes if the others do as
+// well without it.
+void Calibrator::drop_superseded() {
+  for (std::size_t i = 0; taken_.size() > 1 && i < taken_.size();) {
+    const std::size_t place = taken_[i].effect;
+    Model without = model_;
+    if (place < declared_effects_) {
+      ++i;  // a declared effect with another number
+      continue;
+    }
+    without.erase(without.begin() + static_cast<std::ptrdiff_t>(place));
+    std::vector<FreeNumber> numbers;
+    for (std::size_t k = 0; k < taken_.size(); ++k) {
+      const std::size_t effect = taken_[k].effect - (taken_[k].effect > place ? 1 : 0);
+      if (k == i) continue;
+      const auto own = free_numbers(without, effect);
+      numbers.insert(numbers.end(), own.begin(), own.end());
+    }
+    step_(fmt::format("trying without {}", taken_[i].found.kind));
+    without = refit(job_, std::move(without), numbers, seen_, kLastRounds);
+    const double wrong = wrong_share(job_, without, held_);
+    if (wrong - wrong_ > limits_.least_gain / 2 * wrong) {
+      ++i;
+      continue;
+    }
+    model_ = std::move(without);
+    wrong_ = wrong;
+    taken_.erase(taken_.begin() + static_cast<std::ptrdiff_t>(i));
+    for (Taken& taken : taken_) taken.effect -= taken.effect > place ? 1 : 0;
+    i = 0;
+  }
+}
+
+// All numbers together, those that were declared too.
+void Calibrator::refit_all() {
+  step_("fitting all numbers");
+  std::vector<FreeNumber> numbers;
+  for (std::size_t effect = 0; effect < model_.size(); ++effect) {
+    const auto own = free_numbers(model_, effect);
+    numbers.insert(numbers.end(), own.begin(), own.end());
+  }
+  Model all = refit(job_, model_, numbers, seen_, kLastRounds);
+  // What was declared is believed unless the print clearly says otherwise.
+  constexpr double kClearly = 0.97;
+  if (wrong_share(job_, all, seen_) < kClearly * wrong_share(job_, model_, seen_) &&
+      wrong_share(job_, all, held_) < kClearly * wrong_share(job_, model_, held_)) {
+    model_ = std::move(all);
+  }
+}
+
+// Last, since every shift that follows a rule would look like it.
+void Calibrator::look_for_jitter() {
+  step_("looking for jitter");
+  const auto points = surface_points(job_, model_, LayerChoice(job_.masks.size(), true),
+                                     kChoicePoints, kPairReachMm);
+  const auto found = find_jitter(job_, model_, points, known_columns(points));
+  if (!found || found->p > limits_.most_p || found->share < limits_.least_gain) return;
+  model_.push_back({"jitter", {}, {{"sigma_mm", {found->sigma_mm[0], found->sigma_mm[1]}}}});
+  Taken taken;
+  taken.found.kind = "jitter";
+  taken.found.covariate = {"layer", "local", {}};
+  taken.found.p = found->p;
+  taken.found.heldout_gain = found->share;
+  taken.effect = model_.size() - 1;
+  taken_.push_back(std::move(taken));
+}
+
+}  // namespace binderjet

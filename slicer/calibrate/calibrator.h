@@ -1,0 +1,75 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The loop: look for what is missing, put it into the model, fit, until nothing more is found.
+#pragma once
+
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "slicer/calibrate/calibrate.h"
+#include "slicer/calibrate/choose.h"
+#include "slicer/calibrate/fit.h"
+#include "slicer/calibrate/printed_error.h"
+#include "slicer/calibrate/trials.h"
+
+namespace binderjet {
+
+class Calibrator {
+ public:
+  // `job` and `step` must outlive it.
+  Calibrator(const MeasuredJob& job, const Model& declared, const CalibrationLimits& limits,
+             const std::function<void(const std::string&)>& step);
+
+  void run();
+
+  const Model& model() const { return model_; }
+  const LayerChoice& held_out() const { return held_; }
+  // What the residual that is left depends on most; none if that was not looked at.
+  const std::optional<Remaining>& remaining() const { return remaining_; }
+  std::vector<FoundEffect> effects() const;
+
+ private:
+  // An effect that was found, and where its numbers are in the model.
+  struct Taken {
+    FoundEffect found;
+    std::size_t effect = 0;
+  };
+  // A candidate in the real forward model.
+  struct Fitted {
+    Candidate candidate;
+    Model model;
+    double p = 1;
+    double share = 0;
+    bool equal = false;  // the regression cannot tell it from the best
+    WrongCounts counts;  // of the layers seen
+  };
+
+  std::vector<FreeNumber> numbers_of_taken() const;
+  std::vector<std::vector<float>> known_columns(const std::vector<SurfacePoint>& points) const;
+  bool add_one();
+  std::vector<Fitted> regressed();
+  std::vector<Fitted> tried();
+  bool take_best(std::vector<Fitted> fitted);
+  std::vector<std::string> rivals_of(const std::vector<Fitted>& fitted, std::size_t best) const;
+  Model refit_with_taken(Model model, std::size_t effect, int rounds) const;
+  WrongCounts counts_of(const Model& model) const;
+  void drop_superseded();
+  void refit_all();
+  void look_for_jitter();
+
+  const MeasuredJob& job_;
+  CalibrationLimits limits_;
+  const std::function<void(const std::string&)>& step_;
+  LayerChoice held_;
+  LayerChoice seen_;
+  Model model_;
+  std::size_t declared_effects_;
+  double first_wrong_;  // of the layers held out
+  double wrong_;
+  std::vector<Taken> taken_;
+  std::optional<Remaining> remaining_;
+  // Kinds that the last regression cannot tell from its best, and that were not fitted.
+  std::vector<std::string> untried_equals_;
+};
+
+}  // namespace binderjet

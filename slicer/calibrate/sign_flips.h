@@ -1,0 +1,32 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// What a gain counted in cells is worth: cells are larger than the residual is correlated over, so
+// under chance their signs are coins.
+#pragma once
+
+#include <span>
+#include <vector>
+
+namespace binderjet {
+
+constexpr int kNullDraws = 499;
+
+// A sign for each cell in each draw; the same every time.
+std::vector<std::vector<int>> sign_draws(int cells);
+
+double sum_of_cells(std::span<const double> gain);
+
+// How often the best of the family does at least as well as `best` when each cell's gain may as
+// well have been a loss.
+double family_p(std::span<const std::vector<double>* const> family, double best);
+
+// All in all a gain, and at most one slab loses; what is next to nothing of the whole has no voice,
+// for an effect may have nothing to act on there.
+bool most_agree(std::span<const double> slabs);
+// The same along every axis that is not in `along` (candidate.h).
+bool slabs_agree(std::span<const double> gain, unsigned along);
+
+// Whether two gains are apart by no more than one standard error of their difference, cell by cell,
+// or by so little that it is no difference to a person.
+bool alike(std::span<const double> best, std::span<const double> other);
+
+}  // namespace binderjet

@@ -1,0 +1,103 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "slicer/morphology.h"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+#include <vector>
+
+#include "slicer/rows.h"
+
+namespace binderjet {
+namespace {
+
+// A row with each run made wider by `by` at both ends, or narrower where `by` is negative.
+void grown(rows::Row row, int by, int width, std::vector<int>& out) {
+  out.clear();
+  for (std::size_t i = 0; i < row.size(); i += 2) {
+    const int first = std::max(0, row[i] - by);
+    const int last = std::min(width, row[i + 1] + by);
+    if (first >= last) continue;
+    if (!out.empty() && first <= out.back()) {
+      out.back() = last;
+    } else {
+      out.push_back(first);
+      out.push_back(last);
+    }
+  }
+}
+
+}  // namespace
+
+Ellipsoid::Ellipsoid(double radius_mm, const Grid& grid)
+    : radius_{radius_mm / grid.voxel_mm(0), radius_mm / grid.voxel_mm(1),
+              radius_mm / grid.pitch_mm[2]} {
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    // A radius of whole voxels in decimal millimetres is that many but for rounding.
+    constexpr double kRounding = 1e-9;
+    reach_[axis] = static_cast<int>(std::floor(radius_[axis] + kRounding));
+  }
+}
+
+int Ellipsoid::half_width(int dy, int dz) const {
+  const double v = dy / radius_[1];
+  const double w = dz / radius_[2];
+  const double left = 1 - v * v - w * w;
+  constexpr double kRounding = 1e-9;
+  return left < -kRounding ? -1
+                           : static_cast<int>(std::floor(
+                                 radius_[0] * std::sqrt(std::max(0.0, left)) + kRounding));
+}
+
+RunLayer dilated(std::span<const RunLayer* const> window, const Ellipsoid& by) {
+  const auto [rx, ry, rz] = by.reach();
+  const RunLayer& middle = *window[window.size() / 2];
+  RunLayer out(middle.width());
+  std::vector<int> sum;
+  std::vector<int> row;
+  std::vector<int> next;
+  for (int y = 0; y < middle.height(); ++y) {
+    sum.clear();
+    for (int dz = -rz; dz <= rz; ++dz) {
+      const RunLayer* layer = window[static_cast<std::size_t>(dz + rz)];
+      if (layer == nullptr) continue;
+      for (int dy = -ry; dy <= ry; ++dy) {
+        const int half = by.half_width(dy, dz);
+        const rows::Row from = layer->row(y + dy);
+        if (half < 0 || from.empty()) continue;
+        grown(from, half, middle.width(), row);
+        rows::unite(sum, row, next);
+        std::swap(sum, next);
+      }
+    }
+    out.append_row(sum);
+  }
+  return out;
+}
+
+RunLayer eroded(std::span<const RunLayer* const> window, const Ellipsoid& by, Beyond beyond) {
+  const auto [rx, ry, rz] = by.reach();
+  const RunLayer& middle = *window[window.size() / 2];
+  RunLayer out(middle.width());
+  std::vector<int> sum;
+  std::vector<int> row;
+  std::vector<int> next;
+  for (int y = 0; y < middle.height(); ++y) {
+    sum.assign(middle.row(y).begin(), middle.row(y).end());
+    for (int dz = -rz; dz <= rz && !sum.empty(); ++dz) {
+      const RunLayer* layer = window[static_cast<std::size_t>(dz + rz)];
+      if (layer == nullptr && beyond == Beyond::kSame) continue;
+      for (int dy = -ry; dy <= ry && !sum.empty(); ++dy) {
+        const int half = by.half_width(dy, dz);
+        if (half < 0) continue;
+        grown(layer == nullptr ? rows::Row{} : layer->row(y + dy), -half, middle.width(), row);
+        rows::intersect(sum, row, next);
+        std::swap(sum, next);
+      }
+    }
+    out.append_row(sum);
+  }
+  return out;
+}
+
+}  // namespace binderjet
