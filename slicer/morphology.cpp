@@ -39,6 +39,12 @@ Ellipsoid::Ellipsoid(double radius_mm, const Grid& grid)
   }
 }
 
+Ellipsoid Ellipsoid::disc(double radius_mm, const Grid& grid) {
+  Ellipsoid out(radius_mm, grid);
+  out.reach_[2] = 0;
+  return out;
+}
+
 int Ellipsoid::half_width(int dy, int dz) const {
   const double v = dy / radius_[1];
   const double w = dz / radius_[2];

@@ -14,6 +14,8 @@ namespace binderjet {
 class Ellipsoid {
  public:
   Ellipsoid(double radius_mm, const Grid& grid);
+  // The same within its layer only.
+  static Ellipsoid disc(double radius_mm, const Grid& grid);
 
   // How far it reaches: voxels in x and y, layers in z.
   std::array<int, 3> reach() const { return reach_; }

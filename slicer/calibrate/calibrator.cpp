@@ -140,13 +140,10 @@ std::vector<Calibrator::Fitted> Calibrator::tried() {
   constexpr std::size_t kMostTried = 2;
   std::vector<Fitted> out;
   for (Trial& trial : try_effects(job_, model_, seen_)) {
-    if (out.size() == kMostTried) break;
-    if (!limits_.sure(trial.p, trial.share) || trial.share < limits_.least_gain ||
-        !trial.folds_agree) {
-      continue;
-    }
-    step_(fmt::format("tried {}: {:.3f} of the wrong voxels, p {:.3f}", trial.candidate.kind,
-                      trial.share, trial.p));
+    if (out.size() == kMostTried || trial.share < limits_.least_gain) break;
+    step_(fmt::format("tried {}: {:.3f} of the wrong voxels, p {:.3f}{}", trial.candidate.kind,
+                      trial.share, trial.p, trial.folds_agree ? "" : ", in some places only"));
+    if (!limits_.sure(trial.p, trial.share) || !trial.folds_agree) continue;
     Fitted one{std::move(trial.candidate), {}, trial.p, trial.share, false, {}};
     one.model = with_places_fitted(job_, std::move(trial.model), one.candidate.effect, seen_);
     out.push_back(std::move(one));

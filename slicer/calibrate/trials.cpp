@@ -122,8 +122,10 @@ class Trials {
         add("rounding", "facing",
             {"rounding", {{"shape", "gaussian"}}, {{"radius_mm", {radius_mm}}}});
       }
-      for (const double radius_mm : {0.11, 0.21}) {
-        add("rounding", "facing", {"rounding", {{"shape", "ball"}}, {{"radius_mm", {radius_mm}}}});
+      for (const char* shape : {"disc", "ball"}) {
+        for (const double radius_mm : {0.11, 0.21}) {
+          add("rounding", "facing", {"rounding", {{"shape", shape}}, {{"radius_mm", {radius_mm}}}});
+        }
       }
     }
     if (!has("infiltrant")) {

@@ -8,8 +8,7 @@
 namespace binderjet {
 namespace {
 
-void add_ball(double radius_mm, const Grid& grid, ModelForm& form) {
-  const Ellipsoid ball(radius_mm, grid);
+void add_opening(const Ellipsoid& ball, ModelForm& form) {
   const auto [x, y, z] = ball.reach();
   const Reach reach{{x, y}, z, z};
   form.wear.push_back({reach, [ball](std::span<const RunLayer* const> window) {
@@ -27,17 +26,16 @@ void add_gaussian(double radius_mm, const Grid& grid, ModelForm& form) {
 
 void add(const EffectSpec& spec, const Grid& grid, ModelForm& form) {
   const double radius_mm = spec.number("radius_mm");
-  if (spec.words.at("shape") == "ball") {
-    add_ball(radius_mm, grid, form);
-  } else {
-    add_gaussian(radius_mm, grid, form);
-  }
+  const std::string& shape = spec.words.at("shape");
+  if (shape == "ball") add_opening(Ellipsoid(radius_mm, grid), form);
+  if (shape == "disc") add_opening(Ellipsoid::disc(radius_mm, grid), form);
+  if (shape == "gaussian") add_gaussian(radius_mm, grid, form);
 }
 
 }  // namespace
 
 EffectKind rounding_kind() {
-  return {"rounding", {{"shape", {"ball", "gaussian"}}}, {{"radius_mm", 1, 0, 0.5}}, add};
+  return {"rounding", {{"shape", {"ball", "disc", "gaussian"}}}, {{"radius_mm", 1, 0, 0.5}}, add};
 }
 
 }  // namespace binderjet

@@ -2,7 +2,9 @@
 // Rounding: handling and compressed air wear off the edges and corners of the printed part.
 //
 //   shape = "ball": what no ball of radius_mm fits into is gone (morphological opening)
-//         | "gaussian": the part is smoothed with this standard deviation along x, y and z, and
+//         | "disc": the same within each layer, where flat faces and what lies on the bed are
+//         spared | "gaussian": the part is smoothed with this standard deviation along x, y and z,
+//         and
 //           solid from a half on: convex edges wear off, concave ones fill
 #pragma once
 

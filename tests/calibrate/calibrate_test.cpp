@@ -111,22 +111,6 @@ TEST(Calibrate, FindsALostLayerThatNoRegressionSees) {
   EXPECT_EQ(found.effects[0].rivals, std::vector<std::string>{"recoat_compress"});
 }
 
-TEST(Calibrate, SaysUnexplainedWhereThePrintsAgreeAgainstTheModel) {
-  MeasuredJob a = hidden::part("a", {9, 9, 1.7}, 0);
-  hidden::print({}, a, 1);
-  // Stripes of the bed are not printed at all.
-  for (Shared<RunLayer>& layer : a.prints.front()) {
-    RunLayer rest(layer->width());
-    for (int y = 0; y < layer->height(); ++y) {
-      rest.append_row(y % 37 < 12 ? std::span<const int>{} : layer->row(y));
-    }
-    layer = std::make_shared<const RunLayer>(std::move(rest));
-  }
-  a.prints.push_back(a.prints.front());
-  const Calibration found = calibrate(a, {}, kDeclared, {}, [](const std::string&) {});
-  EXPECT_NE(found.verdict, "none");
-}
-
 TEST(Calibrate, GivesTheSameTwice) {
   const Printer printer = printer_named(hidden::catalogue(1), "parity");
   const Calibration one = calibrated(printer);

@@ -88,6 +88,19 @@ TEST(Wear, BallRoundingIsTheOpeningOfTheWholePart) {
   }
 }
 
+TEST(Wear, DiscRoundingOpensEachLayerAlone) {
+  Random random;
+  const Volume mask = random.volume(16, 14, 5, 2);
+  const EffectSpec disc{"rounding", {{"shape", "disc"}}, {{"radius_mm", {0.2}}}};
+  const EffectSpec ball{"rounding", {{"shape", "ball"}}, {{"radius_mm", {0.2}}}};
+  // Layers far thicker than the radius: no ball reaches the next.
+  Grid thick = kGrid;
+  thick.pitch_mm[2] = 1;
+  const PrinterModel model({kThreshold, disc}, kGrid);
+  EXPECT_EQ(model.wear_reach(), 0);
+  EXPECT_EQ(printed(model, mask), printed(PrinterModel({kThreshold, ball}, thick), mask));
+}
+
 TEST(Wear, InfiltrantIsTheClosingOfTheWholePartAndASkin) {
   Random random;
   for (int round = 0; round < 30; ++round) {
