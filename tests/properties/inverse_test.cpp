@@ -122,10 +122,10 @@ Case in_place(Random& random, const EffectSpec& effect) {
     return x < 36 || (x >= 46 && x < 46 + pin && y >= 30 && y < 50);
   });
   const JobPlace place{{3, 5}, {4, 3.2}};
-  c.window = process_window({{"spread", {{"shape", "box"}}, {{"width_mm", {0.7, 0.5}}}},
-                             {"threshold", {}, {{"level", {0.5}}}},
-                             effect},
-                            c.grid, place);
+  c.window = {PrinterModel({{"spread", {{"shape", "box"}}, {{"width_mm", {0.7, 0.5}}}},
+                            {"threshold", {}, {{"level", {0.5}}}},
+                            effect},
+                           c.grid, place)};
   return c;
 }
 
