@@ -91,10 +91,10 @@ std::unique_ptr<Stream<MaskLayer>> inverse_masks(TargetFrom target_from, LayerRa
                                                  std::shared_ptr<const InverseSolver> solver) {
   const int turns = solver->stride();
   const int improving = turns * (turns == 1 && !solver->follows_density() ? 1 : 2);
-  const int searching = improving + 3 * turns;
-  const int steps = searching + 1;
+  const int steps = improving + 3 * turns;
+  const LayerRange settled = grown(layers, solver->print_reach(), job_layers);
   const auto range_with = [&](int steps_left) {
-    return grown(layers, steps_left * solver->reach(), job_layers);
+    return grown(settled, steps_left * solver->reach(), job_layers);
   };
   using First = Step<VoxelLayer, InverseLayer>;
   std::unique_ptr<Stream<InverseLayer>> improved = std::make_unique<First>(
@@ -106,11 +106,13 @@ std::unique_ptr<Stream<MaskLayer>> inverse_masks(TargetFrom target_from, LayerRa
     improved = std::make_unique<Improve>(
         std::move(improved), range_with(steps - step - 1), solver->reach(), job_layers,
         [=](int layer, Improve::Window window) {
-          if (step == searching) return solver->settle(window);
           if (layer % turns != step % turns) return *window[window.size() / 2];
           return step < improving ? solver->improve(window, step < turns) : solver->rescue(window);
         });
   }
+  improved = std::make_unique<Improve>(
+      std::move(improved), layers, solver->print_reach(), job_layers,
+      [solver](int, Improve::Window window) { return solver->settle(window); });
 
   using Last = Step<InverseLayer, MaskLayer>;
   return std::make_unique<Last>(std::move(improved), layers, 0, job_layers,

@@ -41,6 +41,8 @@ class InverseSolver {
 
   // How many layers on each side of a layer improve() and rescue() look at.
   int reach() const { return std::max(2, 2 * search_.printer.window_reach() + 1); }
+  // The same for settle().
+  int print_reach() const { return search_.printer.window_reach(); }
   // Layers so many apart (or a multiple) print into no common layer, so all of them may be improved
   // at once and none spoils what another one saw.
   int stride() const { return stride_; }

@@ -122,15 +122,17 @@ Case in_place(Random& random, const EffectSpec& effect) {
     return x < 36 || (x >= 46 && x < 46 + pin && y >= 30 && y < 50);
   });
   const JobPlace place{{3, 5}, {4, 3.2}};
-  c.window = process_window({{"spread", {{"shape", "box"}}, {{"width_mm", {0.7, 0.5}}}},
-                             {"threshold", {}, {{"level", {0.5}}}},
-                             effect},
-                            c.grid, place);
+  c.window = {PrinterModel({{"spread", {{"shape", "box"}}, {{"width_mm", {0.7, 0.5}}}},
+                            {"threshold", {}, {{"level", {0.5}}}},
+                            effect},
+                           c.grid, place)};
   return c;
 }
 
 TEST(Inverse, AnswersEveryEffectAndPrintsNoLayerWorse) {
   Random random;
+  std::int64_t all_plain = 0;
+  std::int64_t all_inverse = 0;
   for (const EffectSpec& effect : whole::one_of_each()) {
     SCOPED_TRACE(effect.kind);
     const Case c = in_place(random, effect);
@@ -139,8 +141,12 @@ TEST(Inverse, AnswersEveryEffectAndPrintsNoLayerWorse) {
     for (std::size_t k = 0; k < plain.size(); ++k) EXPECT_LE(inverse[k], plain[k]) << "layer " << k;
     std::cout << effect.kind << ": wrong voxels " << sum(plain) << " plain, " << sum(inverse)
               << " inverse\n";
-    EXPECT_LT(sum(inverse), 0.7 * static_cast<double>(sum(plain)));
+    EXPECT_LT(sum(inverse), sum(plain));
+    all_plain += sum(plain);
+    all_inverse += sum(inverse);
   }
+  // Some of the random pins are beyond any mask.
+  EXPECT_LT(2 * all_inverse, all_plain);
 }
 
 TEST(Inverse, KeepsToTheMaskRules) {
