@@ -99,6 +99,13 @@ TEST(LocalDose, BindsWhatThePrinterModelPrints) {
   }
 }
 
+// See slicer/README.md: drops whose weakness follows the mask, and layers that are not where they
+// were sent.
+bool only_the_judge_sees(const EffectSpec& effect) {
+  return effect.kind == "first_drops" || effect.kind == "slice_dropout" ||
+         effect.kind == "recoat_compress";
+}
+
 TEST(LocalDose, BindsWhatIsPrintedWithAnyEffect) {
   Random random;
   const Grid grid{{0.25, 0.2, 0.1}, {2, 2, 2}};
@@ -107,8 +114,7 @@ TEST(LocalDose, BindsWhatIsPrintedWithAnyEffect) {
   const EffectSpec threshold{"threshold", {}, {{"level", {0.5}}}};
   for (const EffectSpec& effect : whole::one_of_each()) {
     SCOPED_TRACE(effect.kind);
-    // Which drops are weak follows the mask: only the judge sees it (slicer/README.md).
-    if (effect.kind == "first_drops") continue;
+    if (only_the_judge_sees(effect)) continue;
     const PrinterModel model({spread, threshold, effect}, grid, place);
     for (int round = 0; round < 10; ++round) {
       expect_same_print(Scene(random, grid, model), 1e-5);
@@ -125,9 +131,8 @@ TEST(LocalDose, FlipsAddUpToTheMaskTheyLeadToWithAnyEffect) {
   const EffectSpec threshold{"threshold", {}, {{"level", {0.5}}}};
   for (const EffectSpec& effect : whole::one_of_each()) {
     SCOPED_TRACE(effect.kind);
-    // The density follows the mask; the solver looks at it once, and again in the next turn. Weak
-    // drops only the judge sees.
-    if (effect.kind == "density" || effect.kind == "first_drops") continue;
+    // The density follows the mask; the solver looks at it once, and again in the next turn.
+    if (effect.kind == "density" || only_the_judge_sees(effect)) continue;
     const PrinterModel model({spread, threshold, effect}, grid, place);
     for (int round = 0; round < 5; ++round) {
       Scene scene(random, grid, model);
