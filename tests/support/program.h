@@ -53,6 +53,7 @@ class Workplace {
           const std::function<void(pid_t)>& meanwhile = {}) const {
     Ran ran;
     const auto start = std::chrono::steady_clock::now();
+    std::fflush(nullptr);  // or the child writes once more what we have not yet written
     const pid_t child = fork();
     if (child == 0) {
       limit(RLIMIT_CPU, seconds);
