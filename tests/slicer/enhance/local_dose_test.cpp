@@ -106,18 +106,22 @@ bool only_the_judge_sees(const EffectSpec& effect) {
          effect.kind == "recoat_compress";
 }
 
-TEST(LocalDose, BindsWhatIsPrintedWithAnyEffect) {
-  Random random;
-  const Grid grid{{0.25, 0.2, 0.1}, {2, 2, 2}};
-  const JobPlace place{{3, 5}, {3, 1.92}};
+const Grid kPlacedGrid{{0.25, 0.2, 0.1}, {2, 2, 2}};
+
+PrinterModel model_with(const EffectSpec& effect) {
   const EffectSpec spread{"spread", {{"shape", "box"}}, {{"width_mm", {0.7, 0.5}}}};
   const EffectSpec threshold{"threshold", {}, {{"level", {0.5}}}};
+  return {{spread, threshold, effect}, kPlacedGrid, {{3, 5}, {3, 1.92}}};
+}
+
+TEST(LocalDose, BindsWhatIsPrintedWithAnyEffect) {
+  Random random;
   for (const EffectSpec& effect : whole::one_of_each()) {
     SCOPED_TRACE(effect.kind);
     if (only_the_judge_sees(effect)) continue;
-    const PrinterModel model({spread, threshold, effect}, grid, place);
+    const PrinterModel model = model_with(effect);
     for (int round = 0; round < 10; ++round) {
-      expect_same_print(Scene(random, grid, model), 1e-5);
+      expect_same_print(Scene(random, kPlacedGrid, model), 1e-5);
       if (testing::Test::HasFatalFailure()) return;
     }
   }
@@ -125,17 +129,13 @@ TEST(LocalDose, BindsWhatIsPrintedWithAnyEffect) {
 
 TEST(LocalDose, FlipsAddUpToTheMaskTheyLeadToWithAnyEffect) {
   Random random;
-  const Grid grid{{0.25, 0.2, 0.1}, {2, 2, 2}};
-  const JobPlace place{{3, 5}, {3, 1.92}};
-  const EffectSpec spread{"spread", {{"shape", "box"}}, {{"width_mm", {0.7, 0.5}}}};
-  const EffectSpec threshold{"threshold", {}, {{"level", {0.5}}}};
   for (const EffectSpec& effect : whole::one_of_each()) {
     SCOPED_TRACE(effect.kind);
     // The density follows the mask; the solver looks at it once, and again in the next turn.
     if (effect.kind == "density" || only_the_judge_sees(effect)) continue;
-    const PrinterModel model({spread, threshold, effect}, grid, place);
+    const PrinterModel model = model_with(effect);
     for (int round = 0; round < 5; ++round) {
-      Scene scene(random, grid, model);
+      Scene scene(random, kPlacedGrid, model);
       const WindowPlaces places = scene.places();
       TileSurroundings around(scene.layers, scene.offsets, places, scene.mask);
       LocalDose dose(scene.stamped_models, scene.grid, scene.box, around);
