@@ -7,12 +7,11 @@
 #include <cerrno>
 #include <cstdio>
 #include <cstring>
-#include <filesystem>
 #include <memory>
 #include <vector>
 
 #include "slicer/error.h"
-#include "slicer/stack/png.h"
+#include "slicer/stack/whole_file.h"
 
 namespace binderjet {
 namespace {
@@ -42,11 +41,7 @@ std::string read_text(const std::string& path) {
 }
 
 void write_text(const std::string& path, const std::string& text) {
-  const std::string part = path + ".part";
-  write_file(part, std::as_bytes(std::span(text)));
-  std::error_code error;
-  std::filesystem::rename(part, path, error);
-  if (error) throw Error(ErrorKind::kBadInput, path, "cannot rename: " + error.message());
+  write_whole_file(path, std::as_bytes(std::span(text)));
 }
 
 std::string file_hash(const std::string& path) {

@@ -11,6 +11,7 @@
 
 #include "slicer/error.h"
 #include "slicer/stack/png.h"
+#include "slicer/stack/whole_file.h"
 
 namespace binderjet {
 namespace {
