@@ -164,7 +164,8 @@ Part load_part(const std::string& file, std::optional<double> unit_mm, const Pla
   part.request.scale = placement.scale;
   part.request.unit_declared = read.unit_declared || unit_mm.has_value();
   const std::string doubt = doubtful_size(part.request);
-  if (!doubt.empty()) part.warnings.push_back(file + ": " + doubt);
+  part.doubtful_size = !doubt.empty();
+  if (part.doubtful_size) part.warnings.push_back(file + ": " + doubt);
   return part;
 }
 
