@@ -40,8 +40,15 @@ std::string read_text(const std::string& path) {
   return text;
 }
 
-void write_text(const std::string& path, const std::string& text) {
-  write_whole_file(path, std::as_bytes(std::span(text)));
+void write_text(const std::string& path, const std::string& text) { write_texts({{path, text}}); }
+
+void write_texts(const std::vector<TextFile>& files) {
+  std::vector<std::unique_ptr<WholeFile>> written;
+  for (const TextFile& file : files) {
+    written.push_back(std::make_unique<WholeFile>(file.path));
+    write_file(written.back()->part(), std::as_bytes(std::span(file.text)));
+  }
+  for (const auto& file : written) file->keep();
 }
 
 std::string file_hash(const std::string& path) {

@@ -143,6 +143,9 @@ Part load_part(const std::string& file, std::optional<double> unit_mm, const Pla
   part.source.file = file;
   part.source.hash = file_hash(file);
   MeshFile read = read_mesh(file);
+  if (file_hash(file) != part.source.hash) {
+    throw Error(ErrorKind::kBadInput, file, "changed while it was read; try again");
+  }
   part.mesh = std::move(read.mesh);
   if (with_paint) {
     part.paint = std::move(read.paint);

@@ -50,6 +50,14 @@ void fail_to_write(const std::string& path) {
               std::string("cannot write: ") + std::strerror(errno));
 }
 
+void make_folders(const std::string& path) {
+  std::error_code error;
+  fs::create_directories(path, error);
+  if (!error) return;
+  errno = error.value();
+  fail_to_write(path);
+}
+
 void write_file(const std::string& path, std::span<const std::byte> bytes) {
   std::FILE* file = std::fopen(path.c_str(), "wb");
   bool good = file != nullptr;

@@ -30,6 +30,8 @@ class WholeFile {
 // errno as the Error of a file that cannot be written: kNoRoom if the disk is full, else kBadInput.
 [[noreturn]] void fail_to_write(const std::string& path);
 
+// Makes a folder and its parents, unless they are there; fails as files do.
+void make_folders(const std::string& path);
 // Writes the bytes to `path` itself, for a file of a folder that is still under way.
 void write_file(const std::string& path, std::span<const std::byte> bytes);
 // Writes the file whole or not at all.
