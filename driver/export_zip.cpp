@@ -22,7 +22,8 @@ std::vector<std::byte> white_on_black(const RunLayer& mask) {
     const auto row = rgb.end() - static_cast<std::ptrdiff_t>(stride) * (y + 1);
     const std::span<const int> runs = mask.row(y);
     for (std::size_t i = 0; i < runs.size(); i += 2) {
-      std::fill(row + 3 * runs[i], row + 3 * runs[i + 1], std::byte{255});
+      std::fill(row + std::ptrdiff_t{3} * runs[i], row + std::ptrdiff_t{3} * runs[i + 1],
+                std::byte{255});
     }
   }
   return rgb;

@@ -125,6 +125,7 @@ std::vector<Region> PieceCounter::loose_pieces() {
     }
   }
   std::vector<Region> out;
+  out.reserve(loose.size());
   for (const int piece : loose) {
     out.push_back(in_slices(regions[static_cast<std::size_t>(piece)], slices_));
   }

@@ -103,6 +103,7 @@ class SceneReader {
     if (texture != nullptr && texture->isOfType(SoVRMLImageTexture::getClassTypeId())) {
       const auto* image = static_cast<const SoVRMLImageTexture*>(texture);
       std::vector<std::string> urls;
+      urls.reserve(static_cast<std::size_t>(image->url.getNum()));
       for (int i = 0; i < image->url.getNum(); ++i) urls.push_back(image->url[i].getString());
       reader.use_image(urls, {image->repeatS.getValue() != 0 ? Tiling::kRepeat : Tiling::kClamp,
                               image->repeatT.getValue() != 0 ? Tiling::kRepeat : Tiling::kClamp});
