@@ -10,7 +10,7 @@ namespace binderjet {
 template <class Found>
 void ContactFinder::walk(Ways& ways, std::span<const int> target, const int* numbers,
                          std::span<const int> printed, int at, Found found) {
-  Ways next;
+  spare_.clear();
   std::size_t first = 0;  // of `ways` that may reach beyond what was seen
   const auto overlapping = [&](int begin, int end, auto take) {
     while (first < ways.size() && ways[first].end <= begin) ++first;
@@ -20,7 +20,7 @@ void ContactFinder::walk(Ways& ways, std::span<const int> target, const int* num
     }
   };
   const auto carry_on = [&](int begin, int end) {
-    if (begin < end) overlapping(begin, end, [&](const Way& way) { next.push_back(way); });
+    if (begin < end) overlapping(begin, end, [&](const Way& way) { spare_.push_back(way); });
   };
   std::size_t run = 0;
   for (std::size_t p = 0; p < printed.size(); p += 2) {
@@ -34,12 +34,12 @@ void ContactFinder::walk(Ways& ways, std::span<const int> target, const int* num
       overlapping(begin, end, [&](const Way& way) {
         if (way.number != number && way.last + 1 < at) found(way, number);
       });
-      next.push_back({begin, end, number, at});
+      spare_.push_back({begin, end, number, at});
       x = end;
     }
     carry_on(x, printed[p + 1]);
   }
-  ways = std::move(next);
+  std::swap(ways, spare_);
 }
 
 void ContactFinder::walk_row(std::span<const int> target, const int* numbers,

@@ -33,14 +33,15 @@ class ContactFinder {
   using Ways = std::vector<Way>;
 
   template <class Found>
-  static void walk(Ways& ways, std::span<const int> target, const int* numbers,
-                   std::span<const int> printed, int at, Found found);
+  void walk(Ways& ways, std::span<const int> target, const int* numbers,
+            std::span<const int> printed, int at, Found found);
   void walk_row(std::span<const int> target, const int* numbers, std::span<const int> printed,
                 int y);
   void found(std::size_t axis, int a, int b, const Region& bridge);
 
   int slice_ = 0;
   std::vector<Ways> upward_;  // by row
+  Ways spare_;                // walk()'s own, kept for its memory
   std::map<std::pair<int, int>, std::array<Region, 3>> found_;
 };
 
