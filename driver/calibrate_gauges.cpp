@@ -11,6 +11,7 @@
 #include "driver/profile.h"
 #include "driver/write_profile.h"
 #include "slicer/error.h"
+#include "slicer/stack/whole_file.h"
 
 namespace binderjet {
 namespace {
@@ -55,17 +56,17 @@ void calibrate_gauges(const std::string& profile, const std::string& gauges,
                       const std::string& folder, const Console& console) {
   const Profile declared = load_profile(profile);
   const GaugeTable table = read_gauge_table(gauges);
-  std::error_code error;
-  fs::create_directories(folder, error);
+  make_folders(folder);
   GaugeSummary summary;
   std::string written;
+  std::vector<TextFile> files;
   if (has_slots(table)) {
     const SlotFindings found =
         trace_slots(read_slots(table), declared.effects, declared.grid(std::nullopt));
     summary = summarize(found, table, declared.effects);
     if (!found.explanations.empty() && found.explanations.front().agrees) {
       written = calibrated_file_name(declared);
-      write_text(folder + "/" + written, slots_profile(declared, found, table));
+      files.push_back({folder + "/" + written, slots_profile(declared, found, table)});
     }
   } else if (has_lengths(table)) {
     summary = summarize(trace_lengths(table, {}), table);
@@ -77,8 +78,9 @@ void calibrate_gauges(const std::string& profile, const std::string& gauges,
   summary.json["profile"] = nullptr;
   if (!written.empty()) summary.json["profile"] = written;
   summary.json["report"] = "report.html";
-  write_text(folder + "/report.html", summary.page);
-  write_text(folder + "/calibration.json", summary.json.dump(1) + "\n");
+  files.push_back({folder + "/report.html", summary.page});
+  files.push_back({folder + "/calibration.json", summary.json.dump(1) + "\n"});
+  write_texts(files);
   console.result(summary.json, summary.text +
                                    (written.empty() ? "" : "\nprofile: " + folder + "/" + written) +
                                    "\nreport: " + folder + "/report.html");

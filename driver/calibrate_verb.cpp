@@ -22,6 +22,7 @@
 #include "slicer/calibrate/calibrate.h"
 #include "slicer/calibrate/measured.h"
 #include "slicer/error.h"
+#include "slicer/stack/whole_file.h"
 
 namespace binderjet {
 namespace {
@@ -143,9 +144,7 @@ void run(const CalibrateOptions& options, const Console& console) {
     throw Error(ErrorKind::kUsage, "--check-job", "goes together with --check-measured");
   }
   const fs::path folder(options.out);
-  std::error_code error;
-  fs::create_directories(folder, error);
-  if (error) throw Error(ErrorKind::kBadInput, options.out, "cannot make the folder");
+  make_folders(options.out);
   const Profile profile = load_profile(options.profile);
   std::vector<MeasuredJob> checks;
   const auto stacks = static_cast<int>(options.measured.size() + options.check_measured.size());
@@ -167,14 +166,16 @@ void run(const CalibrateOptions& options, const Console& console) {
   progress.advance(stacks + kSteps);
 
   std::string written;
+  std::vector<TextFile> files;
   if (!calibration.effects.empty()) {
     written = calibrated_file_name(profile);
-    write_text((folder / written).string(), calibrated_text(calibration, profile, options));
+    files.push_back({(folder / written).string(), calibrated_text(calibration, profile, options)});
   }
   const std::string title = "Calibration of " + profile.name + " on " + options.job;
-  write_calibration_report(calibration, job, title, (folder / "report.html").string());
+  files.push_back({(folder / "report.html").string(), calibration_report(calibration, job, title)});
   const nlohmann::ordered_json json = calibration_json(calibration, written, "report.html");
-  write_text((folder / "calibration.json").string(), json.dump(1) + "\n");
+  files.push_back({(folder / "calibration.json").string(), json.dump(1) + "\n"});
+  write_texts(files);
   std::string text = summary(calibration);
   if (!written.empty()) text += "\nprofile: " + (folder / written).string();
   console.result(json, text + "\nreport: " + (folder / "report.html").string());

@@ -5,7 +5,6 @@
 
 #include <algorithm>
 
-#include "driver/files.h"
 #include "driver/html.h"
 #include "driver/layer_pictures.h"
 #include "driver/print_colors.h"
@@ -199,8 +198,8 @@ std::string models_table(const std::vector<EffectSpec>& before,
   return html::table(rows, 2);
 }
 
-void write_calibration_report(const Calibration& calibration, const MeasuredJob& job,
-                              const std::string& title, const std::string& path) {
+std::string calibration_report(const Calibration& calibration, const MeasuredJob& job,
+                               const std::string& title) {
   std::string body = fmt::format("<h1>{}</h1>\n<section><p class=\"verdict\">{}</p></section>\n",
                                  html::escaped(title), html::escaped(verdict(calibration)));
   body += measured_section(job);
@@ -219,7 +218,7 @@ void write_calibration_report(const Calibration& calibration, const MeasuredJob&
   body += remaining_section(calibration);
   body += section("The models", models_table(calibration.before_model, calibration.after_model) +
                                     note("binderjet " BINDERJET_VERSION));
-  write_text(path, html::page(title, body));
+  return html::page(title, body);
 }
 
 }  // namespace binderjet

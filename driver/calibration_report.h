@@ -9,11 +9,11 @@
 
 namespace binderjet {
 
-// Writes report.html: the verdict in a sentence, the error before and after against the floor, the
+// The page: the verdict in a sentence, the error before and after against the floor, the
 // effects and how sure they are, one layer as predicted by both models against the print, the
 // residual by what it could depend on, what remains, and where all of it comes from.
-void write_calibration_report(const Calibration& calibration, const MeasuredJob& job,
-                              const std::string& title, const std::string& path);
+std::string calibration_report(const Calibration& calibration, const MeasuredJob& job,
+                               const std::string& title);
 
 // The same for the parts that other reports share. Both are markup.
 std::string effects_table(const std::vector<FoundEffect>& effects);

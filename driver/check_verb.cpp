@@ -40,6 +40,8 @@ constexpr Kind kKinds[] = {
     {"lost", "feature vanishes", "features vanish", "too thin to come out of the powder"},
     {"fused", "gap closes", "gaps close", "too narrow to stay open"},
     {"spurious", "loose crumb", "loose crumbs", "printed where the part has nothing"},
+    {"separated", "piece comes off", "pieces come off", "nothing printed holds them to their part"},
+    {"touching", "joint between parts", "joints between parts", "printed where they are apart"},
     {"trapped", "pocket traps powder", "pockets trap powder", "no way out for the powder in it"},
 };
 
@@ -98,17 +100,16 @@ Checked check_plan(const SlicePlan& plan, const Console& console) {
   while (layers->rest().size() > 0) {
     for (const Shared<LayerScore>& layer : layers->next(kBlockLayers)) {
       take(score.add(*layer));
-      for (Region pocket : powder.add(*layer->layer.printed)) {
-        const int rz = header.grid.detail_vx[2];
-        for (auto* z : {&pocket.low[2], &pocket.high[2]}) *z *= rz;
-        pocket.voxels *= rz;
-        checked.findings.add("trapped", pocket);
+      for (const Region& pocket : powder.add(*layer->layer.printed)) {
+        checked.findings.add("trapped", in_slices(pocket, header.grid.detail_vx[2]));
       }
       ++checked.totals.layers;
     }
     progress.advance(checked.totals.layers);
   }
   take(score.finish());
+  for (const Region& piece : score.loose_pieces()) checked.findings.add("separated", piece);
+  for (const Region& joint : score.joints()) checked.findings.add("touching", joint);
   checked.excess = score.voxels().excess();
   checked.totals.mask_px = *mask_px;
   checked.totals.target_vx = score.voxels().solid;
@@ -149,6 +150,8 @@ void check(const SliceOptions& options, const Console& console) {
       text += fmt::format("  and {} smaller ones\n", count - static_cast<std::int64_t>(kMostTold));
     }
   }
+  if (plan.doubtful_size) json["verdict"] = "doubtful size";
+  if (checked.totals.target_vx == 0) json["verdict"] = "nothing to print";
   json["found"] = std::move(all);
   json["excess"] = checked.excess;
   const Estimate estimate = estimate_of(header, checked.totals);

@@ -1,26 +1,23 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // export JOB -o DIR: a job's layers as pictures that a person can open.
 #include <fmt/format.h>
-#include <oneapi/tbb/parallel_for.h>
 
 #include <CLI/CLI.hpp>
-#include <array>
-#include <filesystem>
 #include <memory>
 #include <string>
 #include <vector>
 
 #include "driver/console.h"
+#include "driver/export_3mf.h"
+#include "driver/export_stack.h"
+#include "driver/export_zip.h"
 #include "driver/files.h"
 #include "driver/mask_source.h"
 #include "driver/printed.h"
 #include "driver/verbs.h"
 #include "driver/viewer.h"
-#include "slicer/color/separate.h"
 #include "slicer/error.h"
 #include "slicer/stack/cuberille.h"
-#include "slicer/stack/slice_stack.h"
-#include "slicer/voxelize.h"
 
 namespace binderjet {
 namespace {
@@ -31,107 +28,11 @@ struct ExportOptions {
   std::string what = "mask";
   std::string cuberille;
   std::string html;
+  std::string volume;  // --3mf
+  std::string zip;
   std::string separate;
   bool full_bed = false;
 };
-
-// Runs work(index) for index in [0, count) on all cores, in blocks between which progress is told
-// and Ctrl-C is heard.
-template <class Work>
-void for_each_layer(int count, Progress& progress, Work work) {
-  constexpr int kBlock = 4 * kBlockLayers;
-  for (int first = 0; first < count; first += kBlock) {
-    const int last = std::min(count, first + kBlock);
-    oneapi::tbb::parallel_for(first, last, work);
-    progress.advance(last);
-  }
-}
-
-void export_masks(const MaskSource& job, const ExportOptions& options, const Console& console) {
-  const JobHeader& header = *job.header;
-  StackInfo info = job.stack_info(StackKind::kMask);
-  if (options.full_bed) {
-    for (std::size_t axis = 0; axis < 2; ++axis) {
-      info.size[axis] = header.profile.bed(header.grid).pixels(static_cast<int>(axis));
-      info.origin_mm[axis] = 0;
-    }
-  }
-  StackWriter stack(options.out, info);
-  Progress progress(console, "writing", info.size[2]);
-  for_each_layer(info.size[2], progress, [&](int index) {
-    if (options.full_bed) {
-      stack.write(index, window(job.read(index), -header.box.bed_px[0], -header.box.bed_px[1],
-                                info.size[0], info.size[1]));
-    } else {
-      stack.write_packed(index, job.packed(index));
-    }
-  });
-  stack.finish();
-}
-
-void export_target(const MaskSource& job, const ExportOptions& options, const Console& console) {
-  const JobHeader& header = *job.header;
-  const int rz = header.grid.detail_vx[2];
-  StackInfo info = job.stack_info(StackKind::kTarget);
-  for (std::size_t axis = 0; axis < 3; ++axis) {
-    info.size[axis] *= header.grid.detail_vx[axis];
-    info.pitch_mm[axis] = header.grid.voxel_mm(static_cast<int>(axis));
-  }
-  info.first *= rz;
-  const auto mesh = reload_parts(header, std::filesystem::path(job.path).parent_path().string());
-  const auto target = voxelize(mesh, header.grid, header.box, job.layers());
-
-  StackWriter stack(options.out, info);
-  Progress progress(console, "writing", job.size_px[2]);
-  int done = 0;
-  while (target->rest().size() > 0) {
-    const auto block = target->next(kBlockLayers);
-    oneapi::tbb::parallel_for(0, static_cast<int>(block.size()) * rz, [&](int s) {
-      stack.write(
-          done * rz + s,
-          block[static_cast<std::size_t>(s / rz)]->slices[static_cast<std::size_t>(s % rz)]);
-    });
-    done += static_cast<int>(block.size());
-    progress.advance(done);
-  }
-  stack.finish();
-}
-
-void export_color(const MaskSource& job, const ExportOptions& options, const Console& console) {
-  if (!job.color) {
-    throw Error(ErrorKind::kUsage, job.path,
-                "has no color; its models had none when it was sliced");
-  }
-  StackWriter stack(options.out, job.stack_info(StackKind::kColor));
-  Progress progress(console, "writing", job.size_px[2]);
-  for_each_layer(job.size_px[2], progress,
-                 [&](int index) { stack.write_rgb(index, job.color(index)); });
-  stack.finish();
-}
-
-// Three stacks of drops: cyan, magenta and yellow, each in a folder of its name.
-void export_planes(const MaskSource& job, const ExportOptions& options, const Console& console) {
-  if (!job.color) {
-    throw Error(ErrorKind::kUsage, job.path,
-                "has no color; its models had none when it was sliced");
-  }
-  constexpr std::array<const char*, 3> kInks = {"cyan", "magenta", "yellow"};
-  std::vector<std::unique_ptr<StackWriter>> stacks;
-  for (const char* ink : kInks) {
-    StackInfo info = job.stack_info(StackKind::kColor);
-    info.files = std::string(ink) + "_%06d.png";
-    stacks.push_back(std::make_unique<StackWriter>(options.out + "/" + ink, info));
-  }
-  Progress progress(console, "writing", job.size_px[2]);
-  for_each_layer(job.size_px[2], progress, [&](int index) {
-    std::vector<std::byte> rgb = job.color(index);
-    whiten_outside(job.read(index), rgb);
-    const std::array<RunLayer, 3> planes =
-        separate_cmy(rgb, job.size_px[0], job.size_px[1], job.first + index);
-    for (std::size_t c = 0; c < 3; ++c) stacks[c]->write(index, planes[c]);
-  });
-  for (const auto& stack : stacks) stack->finish();
-}
 
 void export_cuberille(const MaskSource& job, const std::string& path, const Console& console) {
   CuberilleWriter writer(path, job.header->grid);
@@ -143,41 +44,58 @@ void export_cuberille(const MaskSource& job, const std::string& path, const Cons
   writer.finish();
 }
 
-void run(const ExportOptions& options, const Console& console) {
-  const MaskSource job = open_job(options.job, console);
-  if (!options.out.empty() + !options.cuberille.empty() + !options.html.empty() != 1) {
-    throw Error(ErrorKind::kUsage, "export",
-                "name one of -o DIR, --html FILE and --cuberille FILE.ply");
+struct Output {
+  std::string what;
+  std::string path;
+};
+
+// The one place that the command line names to write to.
+Output only_output(const ExportOptions& options) {
+  const std::string stack = options.separate.empty() ? options.what : options.separate;
+  std::vector<Output> named;
+  for (const Output& output :
+       {Output{stack, options.out}, Output{"cuberille", options.cuberille},
+        Output{"html", options.html}, Output{"3mf", options.volume}, Output{"zip", options.zip}}) {
+    if (!output.path.empty()) named.push_back(output);
   }
+  if (named.size() != 1) {
+    throw Error(ErrorKind::kUsage, "export",
+                "name one of -o DIR, --html FILE, --3mf FILE, --zip FILE and --cuberille FILE.ply");
+  }
+  return named.front();
+}
+
+void run(const ExportOptions& options, const Console& console) {
+  const Output output = only_output(options);
   if (!options.separate.empty() && options.out.empty()) {
     throw Error(ErrorKind::kUsage, "--separate", "needs a folder, -o DIR");
   }
-  if (options.full_bed &&
-      (options.what != "mask" || options.out.empty() || !options.separate.empty())) {
+  if (options.full_bed && output.what != "mask" && output.what != "zip") {
     throw Error(ErrorKind::kUsage, "--full-bed", "is for masks only");
   }
-  if (!options.cuberille.empty()) {
-    export_cuberille(job, options.cuberille, console);
-  } else if (!options.html.empty()) {
-    write_text(options.html, viewer_page(job, console));
-  } else if (!options.separate.empty()) {
-    export_planes(job, options, console);
-  } else if (options.what == "color") {
-    export_color(job, options, console);
-  } else if (options.what == "mask") {
-    export_masks(job, options, console);
-  } else if (options.what == "target") {
-    export_target(job, options, console);
+  const MaskSource job = open_job(options.job, console);
+  if (output.what == "cuberille") {
+    export_cuberille(job, output.path, console);
+  } else if (output.what == "html") {
+    write_text(output.path, viewer_page(job, console));
+  } else if (output.what == "3mf") {
+    export_3mf(job, output.path, console);
+  } else if (output.what == "zip") {
+    export_zip(job, output.path, options.full_bed, console);
+  } else if (output.what == "cmy") {
+    export_planes(job, output.path, console);
+  } else if (output.what == "color") {
+    export_color(job, output.path, console);
+  } else if (output.what == "mask") {
+    export_masks(job, output.path, options.full_bed, console);
+  } else if (output.what == "target") {
+    export_target(job, output.path, console);
   } else {
     write_printed(job, PrinterModel(job.header->profile.effects, job.header->grid, job.place()),
-                  job.header->grid, options.out, console);
+                  job.header->grid, output.path, console);
   }
-  const std::string out = options.out + options.cuberille + options.html;
-  std::string what = options.separate.empty() ? options.what : options.separate;
-  if (!options.cuberille.empty()) what = "cuberille";
-  if (!options.html.empty()) what = "html";
-  console.result({{"out", out}, {"what", what}, {"layers", job.size_px[2]}},
-                 fmt::format("{}: {} layers", out, job.size_px[2]));
+  console.result({{"out", output.path}, {"what", output.what}, {"layers", job.size_px[2]}},
+                 fmt::format("{}: {} layers", output.path, job.size_px[2]));
 }
 
 }  // namespace
@@ -201,6 +119,10 @@ void add_export_verb(CLI::App& program) {
                    "write the masks' voxels as a PLY mesh (the paper's own output)");
   verb->add_option("--html", options->html,
                    "write one page with all layers side by side, for any browser, offline");
+  verb->add_option("--3mf", options->volume,
+                   "write masks and color as a 3MF with a volumetric image stack");
+  verb->add_option("--zip", options->zip,
+                   "write masks as numbered PNGs in a ZIP, for UVtools and NanoDLP");
   verb->callback([options, console = add_console_options(*verb)] { run(*options, *console); });
 }
 

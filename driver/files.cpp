@@ -7,12 +7,11 @@
 #include <cerrno>
 #include <cstdio>
 #include <cstring>
-#include <filesystem>
 #include <memory>
 #include <vector>
 
 #include "slicer/error.h"
-#include "slicer/stack/png.h"
+#include "slicer/stack/whole_file.h"
 
 namespace binderjet {
 namespace {
@@ -41,12 +40,15 @@ std::string read_text(const std::string& path) {
   return text;
 }
 
-void write_text(const std::string& path, const std::string& text) {
-  const std::string part = path + ".part";
-  write_file(part, std::as_bytes(std::span(text)));
-  std::error_code error;
-  std::filesystem::rename(part, path, error);
-  if (error) throw Error(ErrorKind::kBadInput, path, "cannot rename: " + error.message());
+void write_text(const std::string& path, const std::string& text) { write_texts({{path, text}}); }
+
+void write_texts(const std::vector<TextFile>& files) {
+  std::vector<std::unique_ptr<WholeFile>> written;
+  for (const TextFile& file : files) {
+    written.push_back(std::make_unique<WholeFile>(file.path));
+    write_file(written.back()->part(), std::as_bytes(std::span(file.text)));
+  }
+  for (const auto& file : written) file->keep();
 }
 
 std::string file_hash(const std::string& path) {

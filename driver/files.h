@@ -4,6 +4,7 @@
 
 #include <cstdint>
 #include <string>
+#include <vector>
 
 namespace binderjet {
 
@@ -12,6 +13,12 @@ std::string read_text(const std::string& path);
 
 // Writes the file whole or not at all. Error{kNoRoom} or {kBadInput} with the path if it cannot.
 void write_text(const std::string& path, const std::string& text);
+
+// The same for files that belong together: none gets its name before there was room for all.
+struct TextFile {
+  std::string path, text;
+};
+void write_texts(const std::vector<TextFile>& files);
 
 // XXH3-64 of the file's bytes, as 16 hexadecimal digits; read in pieces.
 std::string file_hash(const std::string& path);

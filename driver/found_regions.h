@@ -14,7 +14,7 @@
 namespace binderjet {
 
 struct Found {
-  std::string kind;  // lost, fused, spurious, trapped
+  std::string kind;  // lost, fused, spurious, separated, touching, trapped
   Region region;     // in voxels and slices
 };
 

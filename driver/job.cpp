@@ -143,6 +143,9 @@ Part load_part(const std::string& file, std::optional<double> unit_mm, const Pla
   part.source.file = file;
   part.source.hash = file_hash(file);
   MeshFile read = read_mesh(file);
+  if (file_hash(file) != part.source.hash) {
+    throw Error(ErrorKind::kBadInput, file, "changed while it was read; try again");
+  }
   part.mesh = std::move(read.mesh);
   if (with_paint) {
     part.paint = std::move(read.paint);
@@ -164,7 +167,8 @@ Part load_part(const std::string& file, std::optional<double> unit_mm, const Pla
   part.request.scale = placement.scale;
   part.request.unit_declared = read.unit_declared || unit_mm.has_value();
   const std::string doubt = doubtful_size(part.request);
-  if (!doubt.empty()) part.warnings.push_back(file + ": " + doubt);
+  part.doubtful_size = !doubt.empty();
+  if (part.doubtful_size) part.warnings.push_back(file + ": " + doubt);
   return part;
 }
 

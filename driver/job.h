@@ -58,6 +58,7 @@ struct Part {
   Source source;  // corner_px is not yet decided
   BedRequest request;
   std::vector<std::string> warnings;
+  bool doubtful_size = false;  // its file is probably in another unit; a warning says which
 };
 // `unit_mm` overrides what the file declares. Paint is left out unless asked for.
 Part load_part(const std::string& file, std::optional<double> unit_mm, const Placement& placement,

@@ -174,6 +174,7 @@ SlicePlan plan_slices(const SliceOptions& options, const Console& console) {
   for (const Part& part : parts) {
     header.sources.push_back(part.source);
     plan.warnings.insert(plan.warnings.end(), part.warnings.begin(), part.warnings.end());
+    plan.doubtful_size |= part.doubtful_size;
   }
   plan.color = take_color(parts, header.grid, header.profile.color, plan.warnings);
   for (const std::string& warning : plan.warnings) console.warning(warning);

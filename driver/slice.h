@@ -44,6 +44,7 @@ struct SlicePlan {
   std::shared_ptr<const Mesh> mesh;
   std::shared_ptr<const ColorField> color;  // null: no part has any
   std::vector<std::string> warnings;
+  bool doubtful_size = false;  // of a part; a warning says which unit is likely
 };
 
 // Reads and places the parts; says the warnings.

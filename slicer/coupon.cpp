@@ -9,12 +9,11 @@
 #include <cmath>
 #include <cstdint>
 #include <cstring>
-#include <filesystem>
 #include <numbers>
 
 #include "slicer/coupon_shapes.h"
 #include "slicer/error.h"
-#include "slicer/stack/png.h"
+#include "slicer/stack/whole_file.h"
 
 namespace binderjet {
 namespace {
@@ -160,11 +159,7 @@ void write_stl(const Mesh& mesh, const std::string& path) {
     }
     put(file, std::uint16_t{0});
   }
-  const std::string part = path + ".part";
-  write_file(part, file);
-  std::error_code error;
-  std::filesystem::rename(part, path, error);
-  if (error) throw Error(ErrorKind::kBadInput, path, "cannot rename: " + error.message());
+  write_whole_file(path, file);
 }
 
 }  // namespace binderjet

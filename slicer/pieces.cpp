@@ -52,18 +52,37 @@ const std::vector<int>& RegionNumbers::add(const RunLayer& slice) {
       if (of_run[i] != kNone) continue;
       of_run[i] = static_cast<int>(parent_.size());
       parent_.push_back(of_run[i]);
+      region_.emplace_back();
+    }
+    for (std::size_t i = row_begin; i < of_run.size(); ++i) {
+      const std::size_t flip = 2 * (i - row_begin);
+      region_[static_cast<std::size_t>(of_run[i])].include({{row[flip], y, slice_},
+                                                            {row[flip + 1], y + 1, slice_ + 1},
+                                                            row[flip + 1] - row[flip],
+                                                            false});
     }
     below_begin += last_.row(y).size() / 2;
   }
   of_run_ = std::move(of_run);
   last_ = slice;
+  ++slice_;
   return of_run_;
 }
 
+std::vector<Region> RegionNumbers::regions() {
+  std::vector<Region> all(region_.size());
+  for (std::size_t number = 0; number < region_.size(); ++number) {
+    all[static_cast<std::size_t>(root(static_cast<int>(number)))].include(region_[number]);
+  }
+  return all;
+}
+
 void PieceCounter::add(const VoxelLayer& target, const RunLayer& printed) {
+  slices_ = static_cast<int>(target.slices.size());
   const std::vector<int>& pieces = pieces_.add(printed);
   for (const RunLayer& slice : target.slices) {
     const std::vector<int>& parts = parts_.add(slice);
+    contacts_.add(slice, parts, printed);
     std::size_t part_begin = 0;
     std::size_t piece_begin = 0;
     for (int y = 0; y < slice.height(); ++y) {
@@ -78,14 +97,62 @@ void PieceCounter::add(const VoxelLayer& target, const RunLayer& printed) {
   }
 }
 
-std::int64_t PieceCounter::separated() {
+std::map<int, std::set<int>> PieceCounter::pieces_by_part() {
   std::map<int, std::set<int>> by_part;
   for (std::size_t part = 0; part < pieces_of_.size(); ++part) {
     std::set<int>& all = by_part[parts_.root(static_cast<int>(part))];
     for (const int piece : pieces_of_[part]) all.insert(pieces_.root(piece));
   }
+  return by_part;
+}
+
+std::int64_t PieceCounter::separated() {
+  const auto by_part = pieces_by_part();
   return std::count_if(by_part.begin(), by_part.end(),
                        [](const auto& part) { return part.second.size() > 1; });
+}
+
+std::vector<Region> PieceCounter::loose_pieces() {
+  const std::vector<Region> regions = pieces_.regions();
+  const auto voxels = [&](int piece) { return regions[static_cast<std::size_t>(piece)].voxels; };
+  std::set<int> loose;  // a piece may come off two parts at once
+  for (const auto& [part, pieces] : pieces_by_part()) {
+    if (pieces.empty()) continue;
+    const int kept = *std::max_element(pieces.begin(), pieces.end(),
+                                       [&](int a, int b) { return voxels(a) < voxels(b); });
+    for (const int piece : pieces) {
+      if (piece != kept) loose.insert(piece);
+    }
+  }
+  std::vector<Region> out;
+  out.reserve(loose.size());
+  for (const int piece : loose) {
+    out.push_back(in_slices(regions[static_cast<std::size_t>(piece)], slices_));
+  }
+  return out;
+}
+
+std::vector<Region> PieceCounter::joints() {
+  std::map<int, std::set<int>> parts_by_piece;
+  for (const auto& [part, pieces] : pieces_by_part()) {
+    for (const int piece : pieces) parts_by_piece[piece].insert(part);
+  }
+  const auto bridges = contacts_.contacts([this](int number) { return parts_.root(number); });
+  std::set<int> bridged;
+  std::vector<Region> out;
+  for (const auto& [pair, bridge] : bridges) {
+    out.push_back(bridge);
+    bridged.insert({pair.first, pair.second});
+  }
+  const std::vector<Region> regions = pieces_.regions();
+  for (const auto& [piece, parts] : parts_by_piece) {
+    if (parts.size() < 2) continue;
+    if (std::all_of(parts.begin(), parts.end(), [&](int part) { return bridged.contains(part); })) {
+      continue;
+    }
+    out.push_back(in_slices(regions[static_cast<std::size_t>(piece)], slices_));
+  }
+  return out;
 }
 
 }  // namespace binderjet

@@ -9,6 +9,23 @@
 
 namespace binderjet {
 
+void Region::include(const Region& other) {
+  if (other.voxels == 0) return;
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    low[axis] = voxels == 0 ? other.low[axis] : std::min(low[axis], other.low[axis]);
+    high[axis] = voxels == 0 ? other.high[axis] : std::max(high[axis], other.high[axis]);
+  }
+  voxels += other.voxels;
+  touches = touches || other.touches;
+}
+
+Region in_slices(Region region, int slices_per_layer) {
+  region.low[2] *= slices_per_layer;
+  region.high[2] *= slices_per_layer;
+  region.voxels *= slices_per_layer;
+  return region;
+}
+
 std::size_t RegionFinder::root(std::size_t node) {
   while (parent_[node] != node) {
     parent_[node] = parent_[parent_[node]];
@@ -23,14 +40,7 @@ void RegionFinder::join(std::size_t a, std::size_t b) {
   if (a == b) return;
   if (b < a) std::swap(a, b);  // the older one stays, so the order of regions is their order in z
   parent_[b] = a;
-  Region& into = regions_[a];
-  const Region& from = regions_[b];
-  for (std::size_t axis = 0; axis < 3; ++axis) {
-    into.low[axis] = std::min(into.low[axis], from.low[axis]);
-    into.high[axis] = std::max(into.high[axis], from.high[axis]);
-  }
-  into.voxels += from.voxels;
-  into.touches = into.touches || from.touches;
+  regions_[a].include(regions_[b]);
 }
 
 std::vector<Region> RegionFinder::add(const RunLayer& slice, const RunLayer* marks) {

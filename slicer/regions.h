@@ -16,7 +16,13 @@ struct Region {
   std::array<int, 3> high{};  // the greatest, plus 1
   std::int64_t voxels = 0;
   bool touches = false;  // holds a voxel that was marked
+
+  // Takes in another region, or a first one if this has no voxel yet.
+  void include(const Region& other);
 };
+
+// A region whose z counts layers, in slices.
+Region in_slices(Region region, int slices_per_layer);
 
 // Union-find over runs. A region that the new slice does not continue is finished and forgotten.
 class RegionFinder {

@@ -100,6 +100,8 @@ std::vector<Feature> Score::finish() {
   take(FeatureKind::kFused, fused_regions_.finish(), ended);
   take(FeatureKind::kSpurious, printed_regions_.finish(), ended);
   separated_ = pieces_.separated();
+  loose_pieces_ = pieces_.loose_pieces();
+  joints_ = pieces_.joints();
   return ended;
 }
 

@@ -55,6 +55,9 @@ class Score {
   std::int64_t spurious() const { return spurious_; }
   // Connected regions of the target that come out in several pieces.
   std::int64_t separated() const { return separated_; }
+  // What comes off those, and where regions of the target print together (see PieceCounter).
+  const std::vector<Region>& loose_pieces() const { return loose_pieces_; }
+  const std::vector<Region>& joints() const { return joints_; }
 
  private:
   void take(FeatureKind kind, const std::vector<Region>& regions, std::vector<Feature>& out);
@@ -70,6 +73,8 @@ class Score {
   std::int64_t spurious_ = 0;
   PieceCounter pieces_;
   std::int64_t separated_ = 0;
+  std::vector<Region> loose_pieces_;
+  std::vector<Region> joints_;
 };
 
 }  // namespace binderjet

@@ -5,6 +5,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <functional>
 #include <span>
 #include <string>
 #include <string_view>
@@ -114,8 +115,8 @@ Result<void> verify_job(const std::string& path);
 
 // Puts the shares of one job together, byte for byte the job sliced as a whole. All shares are
 // whole and have the same header; each of the layers 0 to layer_count - 1 has a mask in exactly
-// one of them.
+// one of them. Ends with a kInterrupted fault once `interrupted`, if given, says so.
 Result<void> join_jobs(const std::vector<std::string>& shares, const std::string& out,
-                       int layer_count);
+                       int layer_count, const std::function<bool()>& interrupted = {});
 
 }  // namespace binderjet

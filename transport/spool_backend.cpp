@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "transport/backend.h"
+#include "transport/held_job.h"
 #include "transport/job_file.h"
 #include "transport/journal.h"
 #include "transport/spool.h"
@@ -38,13 +39,8 @@ class SpoolBackend : public Backend {
   Result<std::string> header(const std::string& id) override;
 
  private:
-  Fault fault(FaultKind kind, std::string what) const {
-    return {kind, "spool:" + spool_.folder(), std::move(what)};
-  }
-  Fault unknown_job(const std::string& id) const {
-    return fault(FaultKind::kBadInput,
-                 fmt::format("no job {} is here; `binderjet status` lists the jobs", id));
-  }
+  std::string where() const { return "spool:" + spool_.folder(); }
+  Fault fault(FaultKind kind, std::string what) const { return {kind, where(), std::move(what)}; }
   Result<void> open_job(const std::string& id, const JobTicket& ticket);
   Result<void> check_wanted();
   Result<void> acknowledge();
@@ -123,45 +119,25 @@ Result<std::string> SpoolBackend::start(const JobTicket& ticket) {
 Result<int> SpoolBackend::resume(const std::string& id, const JobTicket& ticket) {
   const Result<File> lock = spool_.lock();
   if (!lock) return tl::unexpected(lock.error());
-  if (!is_job_id(id)) return tl::unexpected(unknown_job(id));
-  const auto refuse = [&](const char* what) {
-    return tl::unexpected(fault(FaultKind::kBadInput, fmt::format("job {} {}", id, what)));
-  };
-  if (path_exists(spool_.done_job(id))) return refuse("is done: there is nothing to resume");
-  if (path_exists(spool_.incoming(id))) return refuse("is being sent by another process");
-  const std::string folder = spool_.held(id);
-  if (!path_exists(folder)) return tl::unexpected(unknown_job(id));
-
-  Result<std::optional<Journal>> journal = Journal::open(folder + "/journal");
-  if (!journal) return tl::unexpected(journal.error());
-  if (!journal->has_value()) return refuse("is being looked at by another process; try again");
-  const JournalState state = (*journal)->state();
-  if (!state.started) return refuse("has a damaged journal: cancel it and print again");
+  Result<HeldJob> held = open_held_job(spool_, id, ticket, where());
+  if (!held) return tl::unexpected(held.error());
+  const JournalState state = held->journal.state();
   if (state.bytes == 0 && state.acknowledged > 0) {
-    return refuse("has a damaged journal: cancel it and print again");
+    return tl::unexpected(
+        cannot_resume(where(), id, "has a damaged journal: cancel it and print again"));
   }
   // Before its first acknowledgement a job is its header alone.
-  const std::string part = folder + "/job.part";
   const std::uint64_t bytes =
       state.bytes != 0 ? state.bytes : job_format::kPreambleBytes + ticket.header.size();
-  {
-    // Looked at before anything is changed: a wrong ticket leaves the job as it is.
-    const Result<JobReader> spooled = JobReader::open(part);
-    if (!spooled) return tl::unexpected(spooled.error());
-    if (spooled->header() != ticket.header || state.layer_count != ticket.layer_count) {
-      return refuse("was started from another job file: give that one");
-    }
-  }
-  Result<JobWriter> writer = JobWriter::reopen_kept(part, spool_.done_job(id), bytes);
+  Result<JobWriter> writer = JobWriter::reopen_kept(held->part, spool_.done_job(id), bytes);
   if (!writer) return tl::unexpected(writer.error());
   if (writer->last_layer() != state.acknowledged - 1) {
-    return refuse("has lost acknowledged layers: cancel it and print again");
+    return tl::unexpected(
+        cannot_resume(where(), id, "has lost acknowledged layers: cancel it and print again"));
   }
-  if (auto done = (*journal)->resumed(); !done) return tl::unexpected(done.error());
-  if (auto done = spool_.unhold(id); !done) return tl::unexpected(done.error());
-  writer->move_part(spool_.incoming(id) + "/job.part");
+  if (auto done = take_up(spool_, *held, *writer); !done) return tl::unexpected(done.error());
   writer_ = std::move(*writer);
-  journal_ = std::move(**journal);
+  journal_ = std::move(held->journal);
   id_ = id;
   layer_count_ = state.layer_count;
   next_ = state.acknowledged;
@@ -249,7 +225,7 @@ Result<std::vector<JobStatus>> SpoolBackend::status() {
 Result<void> SpoolBackend::cancel(const std::string& id) {
   const Result<File> lock = spool_.lock();
   if (!lock) return tl::unexpected(lock.error());
-  if (!is_job_id(id)) return tl::unexpected(unknown_job(id));
+  if (!is_job_id(id)) return tl::unexpected(unknown_job(where(), id));
   if (path_exists(spool_.held(id))) return spool_.remove(spool_.held(id));
   if (path_exists(spool_.incoming(id))) {
     const Result<File> mark = open_file(spool_.incoming(id) + "/cancel", O_WRONLY | O_CREAT);
@@ -260,7 +236,7 @@ Result<void> SpoolBackend::cancel(const std::string& id) {
     return tl::unexpected(
         fault(FaultKind::kBadInput, fmt::format("job {} is done: too late to cancel it", id)));
   }
-  return tl::unexpected(unknown_job(id));
+  return tl::unexpected(unknown_job(where(), id));
 }
 
 Result<DeviceStatus> SpoolBackend::device() {
@@ -280,10 +256,7 @@ Result<DeviceStatus> SpoolBackend::device() {
 }
 
 Result<std::string> SpoolBackend::header(const std::string& id) {
-  if (!is_job_id(id) || !path_exists(spool_.held(id))) return tl::unexpected(unknown_job(id));
-  const Result<JobReader> job = JobReader::open(spool_.held(id) + "/job.part");
-  if (!job) return tl::unexpected(job.error());
-  return job->header();
+  return held_header(spool_, id, where());
 }
 
 }  // namespace

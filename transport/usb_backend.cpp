@@ -16,6 +16,7 @@
 #include <utility>
 
 #include "transport/backend.h"
+#include "transport/held_job.h"
 #include "transport/job_file.h"
 #include "transport/journal.h"
 #include "transport/spool.h"
@@ -58,10 +59,6 @@ class UsbBackend : public Backend {
 
  private:
   Fault fault(FaultKind kind, std::string what) const { return {kind, text_, std::move(what)}; }
-  Fault unknown_job(const std::string& id) const {
-    return fault(FaultKind::kBadInput,
-                 fmt::format("no job {} is here; `binderjet status` lists the jobs", id));
-  }
   Result<std::unique_ptr<UsbJob>> connect(const UsbUri& uri, const std::string& text,
                                           UsbSession::Check check, UsbJob::Keep keep);
   Result<void> connect_for_job(const UsbUri& uri, const std::string& text);
@@ -272,35 +269,18 @@ Result<int> UsbBackend::resume(const std::string& id, const JobTicket& ticket) {
   {
     const Result<File> lock = store_.lock();
     if (!lock) return tl::unexpected(lock.error());
-    if (!is_job_id(id)) return tl::unexpected(unknown_job(id));
-    const auto refuse = [&](const char* what) {
-      return tl::unexpected(fault(FaultKind::kBadInput, fmt::format("job {} {}", id, what)));
-    };
-    if (path_exists(store_.done_job(id))) return refuse("is done: there is nothing to resume");
-    if (path_exists(store_.incoming(id))) return refuse("is being sent by another process");
-    const std::string folder = store_.held(id);
-    if (!path_exists(folder)) return tl::unexpected(unknown_job(id));
-    Result<std::optional<Journal>> journal = Journal::open(folder + "/journal");
-    if (!journal) return tl::unexpected(journal.error());
-    if (!journal->has_value()) return refuse("is being looked at by another process; try again");
-    const JournalState& state = (*journal)->state();
-    if (!state.started || state.key == 0) {
-      return refuse("has a damaged journal: cancel it and print again");
-    }
-    const std::string part = folder + "/job.part";
-    const Result<JobReader> stored = JobReader::open(part);
-    if (!stored) return tl::unexpected(stored.error());
-    if (stored->header() != ticket.header || state.layer_count != ticket.layer_count) {
-      return refuse("was started from another job file: give that one");
+    Result<HeldJob> held = open_held_job(store_, id, ticket, text_);
+    if (!held) return tl::unexpected(held.error());
+    if (held->journal.state().key == 0) {
+      return tl::unexpected(
+          cannot_resume(text_, id, "has a damaged journal: cancel it and print again"));
     }
     Result<JobWriter> writer = JobWriter::reopen_kept(
-        part, store_.done_job(id), job_format::kPreambleBytes + ticket.header.size());
+        held->part, store_.done_job(id), job_format::kPreambleBytes + ticket.header.size());
     if (!writer) return tl::unexpected(writer.error());
-    if (auto done = (*journal)->resumed(); !done) return tl::unexpected(done.error());
-    if (auto done = store_.unhold(id); !done) return tl::unexpected(done.error());
-    writer->move_part(store_.incoming(id) + "/job.part");
+    if (auto done = take_up(store_, *held, *writer); !done) return tl::unexpected(done.error());
     writer_ = std::move(*writer);
-    journal_ = std::move(**journal);
+    journal_ = std::move(held->journal);
     id_ = id;
   }
   const JournalState state = journal_->state();
@@ -369,10 +349,10 @@ Result<void> UsbBackend::cancel(const std::string& id) {
       std::from_chars(id.data(), id.data() + 16, number, 16).ptr == id.data() + 16) {
     // A job of another computer, by its number.
   } else {
-    if (!path_exists(store_.folder())) return tl::unexpected(unknown_job(id));
+    if (!path_exists(store_.folder())) return tl::unexpected(unknown_job(text_, id));
     const Result<File> lock = store_.lock();
     if (!lock) return tl::unexpected(lock.error());
-    if (!is_job_id(id)) return tl::unexpected(unknown_job(id));
+    if (!is_job_id(id)) return tl::unexpected(unknown_job(text_, id));
     if (path_exists(store_.incoming(id))) {
       const Result<File> mark = open_file(store_.incoming(id) + "/cancel", O_WRONLY | O_CREAT);
       if (!mark) return tl::unexpected(mark.error());
@@ -382,7 +362,7 @@ Result<void> UsbBackend::cancel(const std::string& id) {
       return tl::unexpected(
           fault(FaultKind::kBadInput, fmt::format("job {} is done: too late to cancel it", id)));
     }
-    if (!path_exists(store_.held(id))) return tl::unexpected(unknown_job(id));
+    if (!path_exists(store_.held(id))) return tl::unexpected(unknown_job(text_, id));
     if (const auto journal = Journal::peek(store_.held(id) + "/journal")) {
       number = journal->key;
       if (const auto same = parse_usb_uri(journal->to)) {
@@ -437,10 +417,7 @@ Result<DeviceStatus> UsbBackend::device() {
 }
 
 Result<std::string> UsbBackend::header(const std::string& id) {
-  if (!is_job_id(id) || !path_exists(store_.held(id))) return tl::unexpected(unknown_job(id));
-  const Result<JobReader> job = JobReader::open(store_.held(id) + "/job.part");
-  if (!job) return tl::unexpected(job.error());
-  return job->header();
+  return held_header(store_, id, text_);
 }
 
 }  // namespace

@@ -113,7 +113,8 @@ class Layout {
       hint += ", and so would a turn by 90 degrees about y";
     }
     if (!part.unit_declared && scale < 1.0 / 3) {
-      hint += "; if the file is in micrometres, say --units um";
+      hint += fmt::format("; if the file is in micrometres, say --units um ({})",
+                          size_text({size[0] / 1000, size[1] / 1000, size[2] / 1000}));
     }
     throw Error(
         ErrorKind::kBadInput, part.where,
@@ -309,11 +310,18 @@ std::string doubtful_size(const BedRequest& part) {
   const Point& size = part.size_mm;
   const double largest = std::max({size[0], size[1], size[2]});
   if (part.unit_declared || largest >= 1) return "";
-  return fmt::format(
-      "the whole part is only {}; if the file is in metres or inches, say --units m ({}) or "
-      "--units in ({})",
-      size_text(size), size_text({size[0] * 1000, size[1] * 1000, size[2] * 1000}),
-      size_text({size[0] * 25.4, size[1] * 25.4, size[2] * 25.4}));
+  // What is a part of some centimetres in metres was drawn in metres; else inches make more sense.
+  constexpr double kLargePartMm = 250;
+  const bool metres = largest * 1000 <= kLargePartMm;
+  const auto advice = [&](const char* word, double unit_mm) {
+    return fmt::format("--units {} ({})", word,
+                       size_text({size[0] * unit_mm, size[1] * unit_mm, size[2] * unit_mm}));
+  };
+  const std::string m = advice("m", 1000);
+  const std::string in = advice("in", 25.4);
+  return fmt::format("the whole part is only {}; its file is probably in {}: say {}, or {}",
+                     size_text(size), metres ? "metres" : "inches", metres ? m : in,
+                     metres ? in : m);
 }
 
 }  // namespace binderjet

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // glTF and whatever else assimp knows: all meshes of the scene where its nodes put them.
+#include <assimp/DefaultIOSystem.h>
 #include <assimp/material.h>
 #include <assimp/postprocess.h>
 #include <assimp/scene.h>
@@ -9,9 +10,11 @@
 #include <array>
 #include <assimp/Importer.hpp>
 #include <cmath>
+#include <filesystem>
 #include <optional>
 #include <span>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "slicer/error.h"
@@ -21,6 +24,30 @@ namespace binderjet {
 namespace {
 
 using Matrix = aiMatrix4x4t<double>;
+
+// The model and what lies beside it; anything else is not there for assimp, which would follow the
+// names in a model wherever they lead.
+class OwnFolder : public Assimp::DefaultIOSystem {
+ public:
+  explicit OwnFolder(std::string model) : model_(std::move(model)) {}
+  bool Exists(const char* file) const override {
+    return is_own(file) && Assimp::DefaultIOSystem::Exists(file);
+  }
+  Assimp::IOStream* Open(const char* file, const char* mode) override {
+    return is_own(file) ? Assimp::DefaultIOSystem::Open(file, mode) : nullptr;
+  }
+
+ private:
+  bool is_own(const std::string& file) const {
+    if (file == model_) return true;
+    const std::filesystem::path folder = std::filesystem::path(model_).parent_path();
+    const std::filesystem::path name(file);
+    return !file_beside(model_, folder.empty() ? file : name.lexically_relative(folder).string())
+                .empty();
+  }
+
+  std::string model_;
+};
 
 class SceneReader {
  public:
@@ -211,6 +238,7 @@ MeshFile read_with_assimp(const std::string& path, const std::string& name) {
     throw Error(ErrorKind::kBadInput, name,
                 "is of no known format; save the model as STL, PLY, OBJ, OFF, 3MF or glTF");
   }
+  importer.SetIOHandler(new OwnFolder(path));  // which the importer takes over
   const aiScene* scene = importer.ReadFile(path, 0);
   if (scene == nullptr) {
     std::string reason = importer.GetErrorString();

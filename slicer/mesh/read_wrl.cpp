@@ -103,6 +103,7 @@ class SceneReader {
     if (texture != nullptr && texture->isOfType(SoVRMLImageTexture::getClassTypeId())) {
       const auto* image = static_cast<const SoVRMLImageTexture*>(texture);
       std::vector<std::string> urls;
+      urls.reserve(static_cast<std::size_t>(image->url.getNum()));
       for (int i = 0; i < image->url.getNum(); ++i) urls.push_back(image->url[i].getString());
       reader.use_image(urls, {image->repeatS.getValue() != 0 ? Tiling::kRepeat : Tiling::kClamp,
                               image->repeatT.getValue() != 0 ? Tiling::kRepeat : Tiling::kClamp});
@@ -229,6 +230,21 @@ class SceneReader {
   std::vector<std::pair<int, bool>> outer_;
 };
 
+// Coin opens what a scene names, if only to see whether it is there: relative names are looked for
+// in its directories, of which it has none here, and absolute ones become relative.
+void disarm_absolute_names(std::string& text) {
+  std::string out;
+  out.reserve(text.size());
+  char before = ' ';
+  for (const char c : text) {
+    if (c == '/' && std::string_view(" \t\r\n\",[{").find(before) != std::string_view::npos)
+      out += ':';
+    out += c;
+    before = c;
+  }
+  text = std::move(out);
+}
+
 }  // namespace
 
 MeshFile read_wrl(InputFile& file, const std::string& path) {
@@ -251,12 +267,15 @@ MeshFile read_wrl(InputFile& file, const std::string& path) {
     throw Error(ErrorKind::kBadInput, name, "takes in other files; save the model as one file");
   }
 
+  disarm_absolute_names(text);
+
   const std::lock_guard lock(coin_mutex);
   static const bool started = [] {
     SoDB::init();
     // Images are decoded later and elsewhere, and only from the model's own folder.
     SbImage::addReadImageCB(no_image, nullptr);
     SoVRMLInline::setFetchURLCallBack(no_fetch, nullptr);
+    SoInput::clearDirectories();
     return true;
   }();
   (void)started;

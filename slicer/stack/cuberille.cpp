@@ -4,14 +4,12 @@
 #include <fmt/format.h>
 
 #include <array>
-#include <cerrno>
-#include <cstring>
-#include <filesystem>
 #include <unordered_map>
 #include <utility>
 #include <vector>
 
 #include "slicer/error.h"
+#include "slicer/stack/whole_file.h"
 
 namespace binderjet {
 namespace {
@@ -53,8 +51,9 @@ void for_each_only_in(std::span<const int> a, std::span<const int> b, Take take)
 }  // namespace
 
 struct CuberilleWriter::State {
-  std::string path;
-  std::string part;
+  State(const std::string& path, const Grid& voxels) : out(path), grid(voxels) {}
+
+  WholeFile out;
   Grid grid;
   File vertices{nullptr, std::fclose};
   File faces{nullptr, std::fclose};
@@ -64,12 +63,8 @@ struct CuberilleWriter::State {
   Plane low;   // under the layer being added
   Plane high;  // above it
 
-  [[noreturn]] void fail() const {
-    throw Error(errno == ENOSPC ? ErrorKind::kNoRoom : ErrorKind::kBadInput, path,
-                std::string("cannot write: ") + std::strerror(errno));
-  }
   void put(std::FILE* file, const void* bytes, std::size_t size) const {
-    if (std::fwrite(bytes, 1, size, file) != size) fail();
+    if (std::fwrite(bytes, 1, size, file) != size) fail_to_write(out.path());
   }
   std::int32_t corner(Plane& plane, int i, int j) {
     return plane.vertex(i, j, [this](int x, int y, int layer) {
@@ -119,21 +114,16 @@ struct CuberilleWriter::State {
 };
 
 CuberilleWriter::CuberilleWriter(const std::string& path, const Grid& grid)
-    : state_(std::make_unique<State>()) {
-  state_->path = path;
-  state_->part = path + ".part";
-  state_->grid = grid;
-  state_->vertices.reset(std::fopen(state_->part.c_str(), "wb+"));
+    : state_(std::make_unique<State>(path, grid)) {
+  state_->vertices.reset(std::fopen(state_->out.part().c_str(), "wb+"));
   state_->faces.reset(std::tmpfile());
-  if (!state_->vertices || !state_->faces) state_->fail();
+  if (!state_->vertices || !state_->faces) fail_to_write(path);
   // The counts are known only at the end, so their places are kept free.
   const std::string space(256, ' ');
   state_->put(state_->vertices.get(), space.data(), space.size());
 }
 
-CuberilleWriter::~CuberilleWriter() {
-  if (!state_->part.empty()) std::remove(state_->part.c_str());
-}
+CuberilleWriter::~CuberilleWriter() = default;
 
 void CuberilleWriter::add(const RunLayer& mask) {
   State& s = *state_;
@@ -149,7 +139,7 @@ void CuberilleWriter::finish() {
   State& s = *state_;
   s.flat_faces(s.below, RunLayer(), s.low, true);
   if (s.vertex_count > INT32_MAX) {
-    throw Error(ErrorKind::kNoRoom, s.path,
+    throw Error(ErrorKind::kNoRoom, s.out.path(),
                 "the cuberille has more than 2^31 vertices; export masks instead");
   }
 
@@ -170,11 +160,8 @@ void CuberilleWriter::finish() {
   header += "\n" + end;
   std::rewind(s.vertices.get());
   s.put(s.vertices.get(), header.data(), header.size());
-  if (std::fclose(s.vertices.release()) != 0) s.fail();
-  std::error_code error;
-  std::filesystem::rename(s.part, s.path, error);
-  if (error) throw Error(ErrorKind::kBadInput, s.path, "cannot rename: " + error.message());
-  s.part.clear();
+  if (std::fclose(s.vertices.release()) != 0) fail_to_write(s.out.path());
+  s.out.keep();
 }
 
 }  // namespace binderjet

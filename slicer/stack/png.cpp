@@ -5,14 +5,11 @@
 #include <isa-l/igzip_lib.h>
 
 #include <cassert>
-#include <cerrno>
 #include <cmath>
 #include <cstdint>
-#include <cstdio>
 #include <cstring>
 #include <stdexcept>
 
-#include "slicer/error.h"
 #include "slicer/run_layer.h"
 
 namespace binderjet {
@@ -118,25 +115,6 @@ std::vector<std::byte> encode_png_mask(std::span<const std::byte> bits, int widt
 std::vector<std::byte> encode_png_rgb(std::span<const std::byte> rgb, int width, int height,
                                       std::array<double, 2> pitch_mm) {
   return encode(rgb, 3 * static_cast<std::size_t>(width), width, height, Samples::kRgb, pitch_mm);
-}
-
-void write_file(const std::string& path, std::span<const std::byte> bytes) {
-  std::FILE* file = std::fopen(path.c_str(), "wb");
-  bool good = file != nullptr;
-  if (good) {
-    good = std::fwrite(bytes.data(), 1, bytes.size(), file) == bytes.size();
-    const int write_errno = errno;
-    if (std::fclose(file) != 0) {
-      good = false;
-    } else if (!good) {
-      errno = write_errno;
-    }
-  }
-  if (!good) {
-    const bool no_room = errno == ENOSPC || errno == EDQUOT;
-    throw Error(no_room ? ErrorKind::kNoRoom : ErrorKind::kBadInput, path,
-                std::string("cannot write: ") + std::strerror(errno));
-  }
 }
 
 }  // namespace binderjet

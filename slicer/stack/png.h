@@ -9,7 +9,6 @@
 #include <array>
 #include <cstddef>
 #include <span>
-#include <string>
 #include <vector>
 
 namespace binderjet {
@@ -21,8 +20,5 @@ std::vector<std::byte> encode_png_mask(std::span<const std::byte> bits, int widt
 // The same for 24-bit rows of red, green, blue.
 std::vector<std::byte> encode_png_rgb(std::span<const std::byte> rgb, int width, int height,
                                       std::array<double, 2> pitch_mm);
-
-// Writes a whole file; Error{kNoRoom} or {kBadInput} with the path if it cannot.
-void write_file(const std::string& path, std::span<const std::byte> bytes);
 
 }  // namespace binderjet

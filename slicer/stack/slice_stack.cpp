@@ -11,6 +11,7 @@
 
 #include "slicer/error.h"
 #include "slicer/stack/png.h"
+#include "slicer/stack/whole_file.h"
 
 namespace binderjet {
 namespace {
@@ -60,12 +61,9 @@ StackWriter::StackWriter(const std::string& folder, StackInfo info)
   check_replaceable(folder_);
   std::error_code error;
   const fs::path parent = fs::path(folder_).parent_path();
-  if (!parent.empty()) fs::create_directories(parent, error);
+  if (!parent.empty()) make_folders(parent.string());
   std::string name = folder_ + ".part-XXXXXX";
-  if (mkdtemp(name.data()) == nullptr) {
-    throw Error(errno == ENOSPC ? ErrorKind::kNoRoom : ErrorKind::kBadInput, folder_,
-                "cannot make the folder here; is its parent writable?");
-  }
+  if (mkdtemp(name.data()) == nullptr) fail_to_write(folder_);
   part_ = name;
   fs::permissions(part_, fs::perms(0755), error);
 }

@@ -65,9 +65,7 @@ Calibration found() {
 }
 
 std::string report(const Calibration& calibration, const MeasuredJob& job) {
-  const Workplace place;
-  write_calibration_report(calibration, job, "Calibration <1>", place / "report.html");
-  return place.text("report.html");
+  return calibration_report(calibration, job, "Calibration <1>");
 }
 
 TEST(CalibrationReport, IsWellFormedAndFetchesNothing) {

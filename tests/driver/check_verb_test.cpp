@@ -24,6 +24,15 @@ class CheckVerb : public testing::Test {
     EXPECT_EQ(ran.status, 0) << ran.err;
     return ran.json();
   }
+  // The one thing of a kind that was found.
+  static nlohmann::json only(const nlohmann::json& said, const std::string& kind) {
+    std::vector<nlohmann::json> all;
+    for (const auto& found : said["found"]) {
+      if (found["kind"] == kind) all.push_back(found);
+    }
+    EXPECT_EQ(all.size(), 1) << kind;
+    return all.empty() ? nlohmann::json() : all.front();
+  }
   Workplace here_;
 };
 
@@ -74,6 +83,53 @@ TEST_F(CheckVerb, NamesAPocketThatKeepsItsPowder) {
   const auto& pocket = said["found"][0];
   EXPECT_EQ(pocket["kind"], "trapped");
   EXPECT_NEAR(pocket["volume_mm3"].get<double>(), 32, 2);
+}
+
+TEST_F(CheckVerb, NamesTheJointOfTwoPartsThatPrintAsOne) {
+  // Two bars that are 0.15 mm apart, between y = 4 and 6 only.
+  Mesh bars = models::joined(box({0, 0, 0}, {3, 10, 2}), box({3.15, 4, 0}, {6, 6, 2}));
+  const nlohmann::json said = check(bars);
+  EXPECT_EQ(said["touching"], 1);
+  EXPECT_EQ(said["verdict"], "loses detail");
+  const auto& joint = only(said, "touching");
+  EXPECT_NEAR(joint["at_mm"][0].get<double>(), 53.07, 0.1);
+  EXPECT_NEAR(joint["at_mm"][1].get<double>(), 55, 0.1);
+  EXPECT_NEAR(joint["size_mm"][0].get<double>(), 0.15, 0.06);
+  EXPECT_NEAR(joint["size_mm"][1].get<double>(), 2, 0.15);
+  EXPECT_EQ(joint["layers"], nlohmann::json({0, 20}));
+  EXPECT_EQ(
+      check(models::joined(box({0, 0, 0}, {3, 10, 2}), box({5, 4, 0}, {8, 6, 2})))["touching"], 0);
+}
+
+TEST_F(CheckVerb, NamesAPieceThatComesOff) {
+  // Two blocks on a neck of 0.05 mm, which does not print.
+  const Mesh blocks = models::joined(box({0, 0, 0}, {4, 4, 2}), box({6, 0, 0}, {9, 4, 2}));
+  const nlohmann::json said = check(models::joined(blocks, box({3.9, 1.97, 0.5}, {6.1, 2.02, 1.5})));
+  EXPECT_EQ(said["separated"], 1);
+  const auto& piece = only(said, "separated");  // the lesser
+  EXPECT_NEAR(piece["at_mm"][0].get<double>(), 57.5, 0.15);
+  EXPECT_NEAR(piece["size_mm"][0].get<double>(), 3, 0.2);
+  EXPECT_EQ(piece["layers"], nlohmann::json({0, 20}));
+  EXPECT_EQ(check(models::joined(blocks, box({3.9, 0, 0}, {6.1, 4, 2})))["separated"], 0);
+}
+
+TEST_F(CheckVerb, NamesTheLikelyUnitOfAPartThatIsTooSmallOrTooLarge) {
+  models::write_obj(box({0, 0, 0}, {0.14, 0.22, 0.19}), here_ / "metres.obj");
+  const Ran metres = here_.run({"check", here_ / "metres.obj", "-p", "z450", "--json"});
+  EXPECT_EQ(metres.status, 0);
+  EXPECT_EQ(metres.json()["verdict"], "doubtful size");
+  EXPECT_THAT(metres.err,
+              HasSubstr("probably in metres: say --units m (140.0 x 220.0 x 190.0 mm)"));
+
+  models::write_obj(box({0, 0, 0}, {0.01, 0.01, 0.01}), here_ / "dust.obj");
+  const Ran dust = here_.run({"check", here_ / "dust.obj", "-p", "z450", "--json"});
+  EXPECT_EQ(dust.json()["verdict"], "nothing to print");
+
+  models::write_obj(box({0, 0, 0}, {4572, 305, 2438}), here_ / "large.obj");
+  const Ran large = here_.run({"check", here_ / "large.obj", "-p", "z450"});
+  EXPECT_EQ(large.status, 3);
+  EXPECT_THAT(large.err, HasSubstr("does not fit the bed"));
+  EXPECT_THAT(large.err, HasSubstr("--units um (4.57 x 0.305 x 2.44 mm)"));
 }
 
 TEST_F(CheckVerb, SaysWhereToAPerson) {

@@ -23,7 +23,7 @@ std::string file_text(const std::string& path) {
 
 // Long options, and short ones that stand alone, in a text.
 std::set<std::string> options_in(const std::string& text) {
-  static const std::regex option("(^|[^\\w-])(--[a-z][a-z-]*)");
+  static const std::regex option("(^|[^\\w-])(--[a-z0-9][a-z0-9-]*)");
   std::set<std::string> found;
   for (std::sregex_iterator at(text.begin(), text.end(), option), end; at != end; ++at) {
     found.insert((*at)[2]);

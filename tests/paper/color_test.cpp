@@ -10,6 +10,7 @@
 
 #include "driver/mask_source.h"
 #include "slicer/coupon.h"
+#include "slicer/stack/png.h"
 #include "tests/support/picture.h"
 #include "tests/support/program.h"
 

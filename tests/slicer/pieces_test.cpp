@@ -4,6 +4,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <map>
 #include <set>
 
@@ -15,13 +16,17 @@ namespace {
 using whole::Random;
 using whole::Volume;
 
-std::int64_t separated(const Volume& target, const Volume& printed, int rz) {
+PieceCounter counted(const Volume& target, const Volume& printed, int rz) {
   PieceCounter counter;
   const auto layers = whole::voxel_stream(target, rz, {0, printed.nz})->next(printed.nz);
   for (int k = 0; k < printed.nz; ++k) {
     counter.add(*layers[static_cast<std::size_t>(k)], whole::slice(printed, k));
   }
-  return counter.separated();
+  return counter;
+}
+
+std::int64_t separated(const Volume& target, const Volume& printed, int rz) {
+  return counted(target, printed, rz).separated();
 }
 
 // The region of each voxel by flooding; 0 is powder.
@@ -65,6 +70,78 @@ TEST(Pieces, TwoLegsThatMeetAboveAreOnePart) {
   legs.fill([](int x, int, int) { return x < 3 || x >= 6; });
   EXPECT_EQ(separated(arch, arch, 1), 0);
   EXPECT_EQ(separated(arch, legs, 1), 1);
+}
+
+TEST(Pieces, TheLesserPieceOfABrokenBarIsLoose) {
+  Volume bar(20, 3, 2);
+  bar.fill([](int x, int, int) { return x >= 2 && x < 18; });
+  Volume broken(20, 3, 1);
+  broken.fill([](int x, int, int) { return x >= 3 && x < 17 && x != 9; });
+  const std::vector<Region> loose = counted(bar, broken, 2).loose_pieces();
+  ASSERT_EQ(loose.size(), 1);
+  EXPECT_EQ(loose[0].low, (std::array{3, 0, 0}));
+  EXPECT_EQ(loose[0].high, (std::array{9, 3, 2}));  // 2 slices
+  EXPECT_EQ(loose[0].voxels, 6 * 3 * 2);
+}
+
+TEST(Pieces, ABridgeBetweenTwoPartsIsTheirJointAlongEachAxis) {
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    SCOPED_TRACE(axis);
+    // Two bars of 4 x 4 along the axis, 3 apart; the print fills 2 x 2 of the gap.
+    std::array<int, 3> size{4, 4, 4};
+    size[axis] = 11;
+    Volume bars(size[0], size[1], size[2]);
+    bars.fill([&](int x, int y, int z) {
+      const int along = std::array{x, y, z}[axis];
+      return along < 4 || along >= 7;
+    });
+    Volume joined(size[0], size[1], size[2]);
+    joined.fill([&](int x, int y, int z) {
+      std::array<int, 3> at{x, y, z};
+      const bool solid = at[axis] < 4 || at[axis] >= 7;
+      at[axis] = 1;
+      return solid || std::all_of(at.begin(), at.end(), [](int v) { return v == 1 || v == 2; });
+    });
+    EXPECT_TRUE(counted(bars, bars, 1).joints().empty());
+    const std::vector<Region> joints = counted(bars, joined, 1).joints();
+    ASSERT_EQ(joints.size(), 1);
+    std::array<int, 3> low{1, 1, 1};
+    std::array<int, 3> high{3, 3, 3};
+    low[axis] = 4;
+    high[axis] = 7;
+    EXPECT_EQ(joints[0].low, low);
+    EXPECT_EQ(joints[0].high, high);
+    EXPECT_EQ(joints[0].voxels, 2 * 2 * 3);
+  }
+}
+
+TEST(Pieces, ThatMeetRoundACornerAreJoinedByTheWholePiece) {
+  Volume parts(8, 8, 1);
+  parts.fill([](int x, int y, int) { return (x < 2 && y < 2) || (x >= 6 && y >= 6); });
+  Volume printed(8, 8, 1);
+  printed.fill([](int x, int y, int) { return x < 2 || y >= 6; });
+  const std::vector<Region> joints = counted(parts, printed, 1).joints();
+  ASSERT_EQ(joints.size(), 1);
+  EXPECT_EQ(joints[0].voxels, 2 * 8 + 2 * 6);
+}
+
+// Joints are there exactly where a flood of the print finds two parts in one piece.
+TEST(Pieces, HaveAJointForEveryPieceOfTwoParts) {
+  Random random;
+  for (int round = 0; round < 300; ++round) {
+    SCOPED_TRACE(round);
+    const Volume target = random.volume(random.number(1, 12), random.number(1, 12), 4);
+    const Volume printed = random.volume(target.nx, target.ny, 4);
+    const std::vector<int> parts = flooded(target);
+    const std::vector<int> pieces = flooded(printed);
+    std::map<int, std::set<int>> parts_of;
+    for (std::size_t i = 0; i < parts.size(); ++i) {
+      if (parts[i] != 0 && pieces[i] != 0) parts_of[pieces[i]].insert(parts[i]);
+    }
+    bool expected = false;
+    for (const auto& [piece, all] : parts_of) expected |= all.size() > 1;
+    ASSERT_EQ(!counted(target, printed, 1).joints().empty(), expected);
+  }
 }
 
 TEST(Pieces, AreThoseOfAFlood) {

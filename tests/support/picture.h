@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "slicer/stack/indexed_png.h"
-#include "slicer/stack/png.h"
+#include "slicer/stack/whole_file.h"
 
 namespace binderjet::pictures {
 

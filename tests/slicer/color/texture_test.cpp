@@ -7,6 +7,7 @@
 #include "slicer/error.h"
 #include "slicer/mesh/read_mesh.h"
 #include "slicer/stack/png.h"
+#include "slicer/stack/whole_file.h"
 #include "tests/slicer/color/colored_layers.h"
 
 namespace binderjet {

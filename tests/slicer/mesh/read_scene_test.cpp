@@ -3,7 +3,6 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include <cstdint>
 #include <string>
 #include <utility>
 #include <vector>
@@ -11,6 +10,7 @@
 #include "slicer/mesh/boundary.h"
 #include "slicer/mesh/read_mesh.h"
 #include "tests/slicer/mesh/samples.h"
+#include "tests/support/archive.h"
 
 namespace binderjet {
 namespace {
@@ -21,40 +21,10 @@ using testing::error_of;
 using ::testing::HasSubstr;
 using testing::TemporaryFile;
 
-std::uint32_t crc32(const std::string& bytes) {
-  std::uint32_t crc = 0xffffffff;
-  for (const char c : bytes) {
-    crc ^= static_cast<unsigned char>(c);
-    for (int i = 0; i < 8; ++i) crc = crc >> 1 ^ ((crc & 1) != 0 ? 0xedb88320u : 0u);
-  }
-  return ~crc;
-}
-
-std::string little(std::uint32_t value, int bytes) {
+std::string little(std::size_t value, int bytes) {
   std::string text;
   for (int i = 0; i < bytes; ++i) text += static_cast<char>(value >> 8 * i);
   return text;
-}
-
-std::string little(std::size_t value, int bytes) {
-  return little(static_cast<std::uint32_t>(value), bytes);
-}
-
-// A ZIP archive without compression.
-std::string zip(const std::vector<std::pair<std::string, std::string>>& files) {
-  std::string body;
-  std::string directory;
-  for (const auto& [name, content] : files) {
-    const std::string facts = little(20u, 2) + little(0u, 8) + little(crc32(content), 4) +
-                              little(content.size(), 4) + little(content.size(), 4) +
-                              little(name.size(), 2) + little(0u, 2);
-    directory +=
-        "PK\x01\x02" + little(20u, 2) + facts + little(0u, 10) + little(body.size(), 4) + name;
-    body += "PK\x03\x04" + facts + name + content;
-  }
-  const std::size_t start = body.size();
-  return body + directory + "PK\x05\x06" + little(0u, 4) + little(files.size(), 2) +
-         little(files.size(), 2) + little(directory.size(), 4) + little(start, 4) + little(0u, 2);
 }
 
 std::string model_3mf(const std::string& unit, const std::string& resources,
@@ -81,7 +51,7 @@ std::string model_3mf(const std::string& unit, const std::string& resources,
       "id=\"1\" type=\"model\">" +
       tetrahedron + "</object><object id=\"2\" type=\"support\">" + tetrahedron + "</object>" +
       resources + "</resources><build>" + build + "</build></model>";
-  return zip(
+  return archive_bytes(
       {{"[Content_Types].xml", types}, {"_rels/.rels", relations}, {"3D/3dmodel.model", model}});
 }
 

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// libFuzzer's door to fuzz_frames (targets.h).
+// libFuzzer's door to the target that BINDERJET_TARGET names (targets.h).
 #include "tests/fuzz/targets.h"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
-  binderjet::fuzz_frames(data, size);
+  binderjet::BINDERJET_TARGET(data, size);
   return 0;
 }

@@ -1,0 +1,40 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Files that stand under their name whole or not at all.
+#pragma once
+
+#include <cstddef>
+#include <span>
+#include <string>
+
+namespace binderjet {
+
+// A place beside `path` to write to; keep() gives it its name, and without that it vanishes.
+class WholeFile {
+ public:
+  // Error{kUsage} if something other than a plain file has the name: it would be replaced.
+  explicit WholeFile(const std::string& path);
+  ~WholeFile();
+  WholeFile(const WholeFile&) = delete;
+  WholeFile& operator=(const WholeFile&) = delete;
+
+  // Where to write; no other process writes there.
+  const std::string& part() const { return part_; }
+  const std::string& path() const { return path_; }
+  void keep();
+
+ private:
+  std::string path_;
+  std::string part_;  // empty once kept
+};
+
+// errno as the Error of a file that cannot be written: kNoRoom if the disk is full, else kBadInput.
+[[noreturn]] void fail_to_write(const std::string& path);
+
+// Makes a folder and its parents, unless they are there; fails as files do.
+void make_folders(const std::string& path);
+// Writes the bytes to `path` itself, for a file of a folder that is still under way.
+void write_file(const std::string& path, std::span<const std::byte> bytes);
+// Writes the file whole or not at all.
+void write_whole_file(const std::string& path, std::span<const std::byte> bytes);
+
+}  // namespace binderjet
