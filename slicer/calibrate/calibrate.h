@@ -19,7 +19,7 @@ struct CalibrationLimits {
   double large_share = 0.1;
   double most_p_of_large = 0.05;
   double least_gain = 0.04;
-  int most_effects = 4;
+  int most_effects = 6;
 
   bool sure(double p, double share) const {
     return p <= most_p || (p <= most_p_of_large && share >= large_share);
