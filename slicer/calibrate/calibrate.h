@@ -16,7 +16,8 @@ struct CalibrationLimits {
   double least_share = 0.015;
   // Signs of k cells drawn at random are all kept in 2^-k of the draws, so what acts in five of the
   // cells (an edge, a few layers) never has a p below 0.03, however strong it is. Its size is asked
-  // for instead: a share that chance never came near (100 prints with nothing hidden: MAXSHARE).
+  // for instead: a share that chance never came near (100 prints with nothing hidden: 0.002 at
+  // most).
   double large_share = 0.1;
   double most_p_of_large = 0.05;
   double least_gain = 0.04;
