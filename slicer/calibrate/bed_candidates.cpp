@@ -5,6 +5,8 @@
 #include <numbers>
 
 #include "slicer/calibrate/candidate_list.h"
+#include "slicer/effects/jet_out.h"
+#include "slicer/effects/model.h"
 
 namespace binderjet {
 namespace {
@@ -66,16 +68,20 @@ void add_bands(CandidateList& list) {
 }
 
 void add_jets(CandidateList& list) {
-  const double pixel = list.job().grid.pitch_mm[1];
-  const double end = list.job().place.origin_mm[1] + list.job().place.size_mm[1];
-  for (const int width_px : {2, 4, 6, 8, 11, 16, 24}) {
+  const MeasuredJob& job = list.job();
+  const ModelForm form = PrinterModel(list.model(), job.grid, job.place).form();
+  const double pixel = job.grid.pitch_mm[1];
+  const double end = job.place.origin_mm[1] + job.place.size_mm[1];
+  for (const int width_px : {1, 2, 4, 8, 16, 24}) {
     const double width = width_px * pixel;
     const double step = std::max(1, width_px / 4) * pixel;
-    for (double from = list.job().place.origin_mm[1]; from + width <= end; from += step) {
+    for (double from = job.place.origin_mm[1]; from + width <= end; from += step) {
       const double to = from + width;
       list.add("jet_out", {"y", "window", {{"from_mm", {from}}, {"to_mm", {to}}}},
                {{Basis::kDose,
-                 [from, to](const Spot& s) { return s.y_mm >= from && s.y_mm < to ? 1.0 : 0.0; },
+                 [share = share_from_jets(form, job.grid, from, to)](const Spot& s) {
+                   return share(s.y_mm);
+                 },
                  {},
                  1}},
                kAlongY, [model = list.model(), from, to](Coefficients c) {

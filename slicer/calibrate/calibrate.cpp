@@ -8,23 +8,19 @@
 #include "slicer/calibrate/score_prints.h"
 
 namespace binderjet {
-namespace {
 
-// Nothing was found, but two prints of the job are much more alike than the model is to them.
 bool far_above_floor(const BeforeAfter& score, bool scanned) {
-  const double most = scanned ? 3 : 1.5;  // a scanner's blur is not of the printer
+  const double most = scanned ? 3 : 1.5;
   return score.floor && score.after.wrong > most * score.floor->wrong;
 }
 
-std::string verdict_of(const std::vector<FoundEffect>& effects, bool unlike) {
-  if (effects.empty()) return unlike ? "unexplained" : "none";
+std::string verdict_of(const std::vector<FoundEffect>& effects, bool far_above) {
+  if (effects.empty()) return far_above ? "unexplained" : "none";
   const bool nameless = std::all_of(effects.begin(), effects.end(), [](const FoundEffect& effect) {
     return effect.kind == "empirical";
   });
   return nameless ? "unexplained" : "effect";
 }
-
-}  // namespace
 
 Calibration calibrate(const MeasuredJob& job, const std::vector<MeasuredJob>& checks,
                       const std::vector<EffectSpec>& declared, const CalibrationLimits& limits,

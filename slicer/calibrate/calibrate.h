@@ -14,17 +14,28 @@ struct CalibrationLimits {
   // look, and this share of the printed error on layers that the fit did not see.
   double most_p = 0.01;
   double least_share = 0.015;
-  // What is in a few places only has few cells to be sure from: a share as large as this may be
-  // less sure.
+  // Signs of k cells drawn at random are all kept in 2^-k of the draws, so what acts in five of the
+  // cells (an edge, a few layers) never has a p below 0.03, however strong it is. Its size is asked
+  // for instead: a share that chance never came near (100 prints with nothing hidden: 0.002 at
+  // most).
   double large_share = 0.1;
   double most_p_of_large = 0.05;
   double least_gain = 0.04;
-  int most_effects = 4;
+  int most_effects = 6;
 
   bool sure(double p, double share) const {
     return p <= most_p || (p <= most_p_of_large && share >= large_share);
   }
 };
+
+// "effect" if one has a name, "unexplained" if those found have none; with none found "unexplained"
+// if the prints say that there is something (far_above_floor()), else "none".
+std::string verdict_of(const std::vector<FoundEffect>& effects, bool far_above);
+
+// Whether what is left can be no chance. Where only noise parts model and print, two prints differ
+// by at least as much as either does from the model, since both have noise: half as much again is
+// none. A scanner adds blur, which replicates share and no model has: three times as much there.
+bool far_above_floor(const BeforeAfter& score, bool scanned);
 
 // `checks` are prints of the same printer that the fit never sees. `step` is told what is being
 // done, and may throw to end it.

@@ -45,8 +45,8 @@ Calibrator::Calibrator(const MeasuredJob& job, const Model& declared,
       seen_(others(held_)),
       model_(declared),
       declared_effects_(declared.size()),
-      first_wrong_(wrong_share(job, declared, held_)),
-      wrong_(first_wrong_) {}
+      first_errors_(errors_of(declared)),
+      errors_(first_errors_) {}
 
 void Calibrator::run() {
   while (static_cast<int>(taken_.size()) < limits_.most_effects && add_one()) {
@@ -167,12 +167,19 @@ bool Calibrator::take_best(std::vector<Fitted> fitted) {
   const Candidate& candidate = fitted[best].candidate;
   Model model = with_places_fitted(job_, fitted[best].model, candidate.effect, seen_);
   model = refit_with_taken(std::move(model), candidate.effect, kLastRounds);
-  const double wrong = wrong_share(job_, model, held_);
-  const bool enough = wrong_ - wrong >= limits_.least_gain * wrong_ &&
-                      wrong_ - wrong >= limits_.least_gain / 2 * first_wrong_;
-  step_(fmt::format("{}: printed error {:.5f} to {:.5f} on layers not seen", candidate.kind, wrong_,
-                    wrong));
-  if (!enough) return false;
+  const Errors errors = errors_of(model);
+  step_(fmt::format("{}: printed error {:.5f} to {:.5f} on layers not seen", candidate.kind,
+                    errors_.held, errors.held));
+  const auto enough = [&](double Errors::*of) {
+    const double gain = errors_.*of - errors.*of;
+    return gain >= limits_.least_gain * errors_.*of &&
+           gain >= limits_.least_gain / 2 * first_errors_.*of;
+  };
+  // What is in some layers only may be in none of those not seen: folds along x and y have judged
+  // it, and there it must do no harm.
+  const bool in_layers = (candidate.along & kAlongZ) != 0;
+  const bool harmless = errors.held <= errors_.held;
+  if (!enough(&Errors::held) && !(in_layers && harmless && enough(&Errors::all))) return false;
 
   Taken taken;
   taken.found.kind = candidate.kind;
@@ -181,9 +188,10 @@ bool Calibrator::take_best(std::vector<Fitted> fitted) {
   taken.found.heldout_gain = fitted[best].share;
   taken.found.rivals = rivals_of(fitted, best);
   taken.effect = candidate.effect;
+  taken.along = candidate.along;
   taken_.push_back(std::move(taken));
   model_ = std::move(model);
-  wrong_ = wrong;
+  errors_ = errors;
   remaining_.reset();
   return true;
 }
@@ -209,6 +217,11 @@ std::vector<std::string> Calibrator::rivals_of(const std::vector<Fitted>& fitted
   }
   if (fitted[best].equal) std::for_each(untried_equals_.begin(), untried_equals_.end(), add);
   return out;
+}
+
+Calibrator::Errors Calibrator::errors_of(const Model& model) const {
+  return {wrong_share(job_, model, held_),
+          wrong_share(job_, model, LayerChoice(job_.masks.size(), true))};
 }
 
 WrongCounts Calibrator::counts_of(const Model& model) const {
@@ -242,13 +255,17 @@ void Calibrator::drop_superseded() {
     }
     step_(fmt::format("trying without {}", taken_[i].found.kind));
     without = refit(job_, std::move(without), numbers, seen_, kLastRounds);
-    const double wrong = wrong_share(job_, without, held_);
-    if (wrong - wrong_ > limits_.least_gain / 2 * wrong) {
+    const Errors errors = errors_of(without);
+    const auto missed = [&](double Errors::*of) {
+      return errors.*of - errors_.*of > limits_.least_gain / 2 * errors.*of;
+    };
+    const bool in_layers = (taken_[i].along & kAlongZ) != 0;
+    if (missed(&Errors::held) || (in_layers && missed(&Errors::all))) {
       ++i;
       continue;
     }
     model_ = std::move(without);
-    wrong_ = wrong;
+    errors_ = errors;
     taken_.erase(taken_.begin() + static_cast<std::ptrdiff_t>(i));
     for (Taken& taken : taken_) taken.effect -= taken.effect > place ? 1 : 0;
     i = 0;

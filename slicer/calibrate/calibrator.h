@@ -33,6 +33,12 @@ class Calibrator {
   struct Taken {
     FoundEffect found;
     std::size_t effect = 0;
+    unsigned along = kNowhere;
+  };
+  // wrong_share() of the layers held out and of all.
+  struct Errors {
+    double held;
+    double all;
   };
   // A candidate in the real forward model.
   struct Fitted {
@@ -53,6 +59,7 @@ class Calibrator {
   std::vector<std::string> rivals_of(const std::vector<Fitted>& fitted, std::size_t best) const;
   Model refit_with_taken(Model model, std::size_t effect, int rounds) const;
   WrongCounts counts_of(const Model& model) const;
+  Errors errors_of(const Model& model) const;
   void drop_superseded();
   void refit_all();
   void look_for_jitter();
@@ -64,8 +71,8 @@ class Calibrator {
   LayerChoice seen_;
   Model model_;
   std::size_t declared_effects_;
-  double first_wrong_;  // of the layers held out
-  double wrong_;
+  Errors first_errors_;
+  Errors errors_;
   std::vector<Taken> taken_;
   std::optional<Remaining> remaining_;
   // Kinds that the last regression cannot tell from its best, and that were not fitted.

@@ -21,6 +21,9 @@ double step_of(const EffectSpec& effect, const std::string& name, double value) 
       {"by_mm", 0.002}, {"by", 0.0003},       {"height_mm", -0.05}, {"amount", 0.005},
       {"wave", 0.003},  {"per_mm2", 0.0002},  {"period", -0.002},   {"period_mm", -0.002},
       {"width", -0.05}, {"length_mm", -0.05}, {"center_mm", 0.05},  {"direction_deg", 0.5}};
+  // Which layers a pulse is in is found by the scan: between two of them there is nothing to fit.
+  const auto form = effect.words.find("form");
+  if (form != effect.words.end() && form->second == "pulse" && name != "amount") return 0;
   if (name == "radius_mm") return effect.kind == "density" ? 0.05 * value : 0;  // wear has no dose
   if (name == "per_mm") return effect.kind == "registration_drift" ? 0.0005 : 0.001;
   if (name == "center_mm" && effect.kind == "grad_bed") return 0;

@@ -47,19 +47,24 @@ std::optional<Jitter> find_jitter(const MeasuredJob& job, const Model& model,
   Jitter out;
   out.p = choices.front().p;
   out.share = choices.front().share;
+  bool any = false;
   for (std::size_t axis = 0; axis < 2; ++axis) {
+    // Where masks are moved by whole voxels the rest of any shift, 1 / sqrt 12 of a voxel, looks
+    // random too.
+    const double nothing_mm = 0.4 * job.grid.voxel_mm(static_cast<int>(axis));
     std::vector<double> shifts;
     for (std::size_t i = axis; i < choices.front().coefficients.size(); i += 2) {
       shifts.push_back(choices.front().coefficients[i]);
     }
     constexpr double kFollows = 0.4;
-    constexpr double kNothing = 0.01;  // mm
     double square = 0;
     for (const double shift : shifts) square += shift * shift;
     out.sigma_mm[axis] = std::sqrt(square / static_cast<double>(shifts.size()));
-    if (out.sigma_mm[axis] > kNothing && std::abs(follows(shifts)) > kFollows) return std::nullopt;
+    if (out.sigma_mm[axis] <= nothing_mm) continue;
+    if (std::abs(follows(shifts)) > kFollows) return std::nullopt;
+    any = true;
   }
-  return out;
+  return any ? std::optional(out) : std::nullopt;
 }
 
 }  // namespace binderjet

@@ -19,8 +19,8 @@ struct Jitter {
       0;  // of the residual's power that shifts per layer take where the fit did not look
 };
 
-// None if the layers are not apart, or if their shifts follow each other: then they have a cause
-// that depends on the height, and this is not it. `known` as for choose().
+// None if the layers are apart by next to nothing, or if their shifts follow each other: then they
+// have a cause that depends on the height, and this is not it. `known` as for choose().
 std::optional<Jitter> find_jitter(const MeasuredJob& job, const Model& model,
                                   const std::vector<SurfacePoint>& points,
                                   const std::vector<std::vector<float>>& known);

@@ -81,7 +81,9 @@ class Scan {
                                    {{"acts", "dose"}, {"axis", "layer"}, {"form", "periodic"}},
                                    {{"period", {2}}, {"wave", {c[0], 0}}}});
       };
-    } else {
+    }
+    add_pulses(acts);
+    if (acts != Basis::kDose) {
       // As a dose this is the catalogue's pause.
       for (int k = 2; k <= count - 2; ++k) {
         const double at = (job_.first_layer + k) * pitch;
@@ -96,6 +98,23 @@ class Scan {
         add(acts, {"z", "window", {{"from_mm", {from}}, {"to_mm", {to}}}}, kAlongZ,
             {{"from", {from}}, {"to", {to}}}, "z", "window",
             [from, to](const Spot& s) { return s.z_mm >= from && s.z_mm < to ? 1.0 : 0.0; });
+      }
+    }
+  }
+
+  // One layer of every so many is another: a refill, a cleaning. No few waves add up to that.
+  void add_pulses(Basis acts) {
+    constexpr int kMostLayers = 12;
+    constexpr int kFewest = 3;  // twice could be two windows
+    for (int period = 3; period <= std::min(kMostLayers, job_.layers() / kFewest); ++period) {
+      for (int at = 0; at < period; ++at) {
+        add(acts, {"layer", "periodic", {{"period_layers", {static_cast<double>(period)}}}},
+            kAlongZ,
+            {{"period", {static_cast<double>(period)}},
+             {"at", {static_cast<double>(at)}},
+             {"width", {1}}},
+            "layer", "pulse",
+            [period, at](const Spot& s) { return (s.layer - at) % period == 0 ? 1.0 : 0.0; });
       }
     }
   }

@@ -19,8 +19,9 @@ double sum_of_cells(std::span<const double> gain);
 // well have been a loss.
 double family_p(std::span<const std::vector<double>* const> family, double best);
 
-// All in all a gain, and at most one slab loses; what is next to nothing of the whole has no voice,
-// for an effect may have nothing to act on there.
+// All in all a gain, and at most one slab loses. A slab that gains or loses less than a fiftieth of
+// the whole has no vote: where an effect has nothing to act on (no edge, no gap) chance alone sets
+// the sign, and three such slabs would reject every second effect that is there.
 bool most_agree(std::span<const double> slabs);
 // The same along every axis that is not in `along` (candidate.h).
 bool slabs_agree(std::span<const double> gain, unsigned along);

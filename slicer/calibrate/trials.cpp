@@ -157,6 +157,16 @@ class Trials {
   std::vector<Tried> out_;
 };
 
+// Among layers of one shape nothing says which was lost: the middle one is wrong by the least on a
+// part that has another shape there.
+const Tried* middle_of_equals(const std::vector<Tried>& tried, const Tried& best) {
+  std::vector<const Tried*> equals;
+  for (const Tried& one : tried) {
+    if (one.kind == best.kind && one.gain == best.gain) equals.push_back(&one);
+  }
+  return equals[(equals.size() - 1) / 2];
+}
+
 // How a number that names a place or a size is moved: by steps of this; 0 for others.
 double place_step(const EffectSpec& effect, const std::string& name, double value,
                   const Grid& grid) {
@@ -206,6 +216,7 @@ std::vector<Trial> try_effects(const MeasuredJob& job, const Model& model,
   std::vector<Trial> out;
   for (const Tried* one : best) {
     if (one->total() <= 0) continue;
+    one = middle_of_equals(tried, *one);
     Trial trial;
     trial.candidate.kind = one->kind;
     trial.candidate.covariate = one->covariate;

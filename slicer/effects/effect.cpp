@@ -51,7 +51,10 @@ const Rule* find_rule(const std::vector<Rule>& rules, const std::string& name) {
 
 SpecFault check_word(const WordRule& rule, const EffectSpec& spec) {
   const auto found = spec.words.find(rule.name);
-  if (found == spec.words.end()) return {"", fmt::format("needs the key {}", rule.name)};
+  if (found == spec.words.end()) {
+    return {"",
+            fmt::format("needs the key {}, one of: {}", rule.name, fmt::join(rule.allowed, ", "))};
+  }
   if (std::find(rule.allowed.begin(), rule.allowed.end(), found->second) != rule.allowed.end()) {
     return {};
   }

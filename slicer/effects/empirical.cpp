@@ -14,6 +14,9 @@ namespace {
 // A trend may not run away where nobody measured.
 constexpr double kMost = 0.9;
 
+// Far below a layer or a voxel: 7 * (3 / 7.0) need not be 3.
+constexpr double kRounding = 1e-6;
+
 using Of = std::function<double(double)>;
 using Place = std::function<double(const Spot&)>;
 
@@ -67,6 +70,14 @@ std::pair<Of, double> shape_of(const EffectSpec& spec) {
             },
             most};
   }
+  if (form == "pulse") {
+    return {[amount, at = need(spec, "at"), width = need(spec, "width"),
+             period = need(spec, "period")](double u) {
+              const double turns = (u - at) / period;
+              return (turns - std::floor(turns)) * period < width - kRounding ? amount : 0;
+            },
+            most};
+  }
   if (form == "local") {
     return {[amount, at = need(spec, "at"), width = need(spec, "width")](double u) {
               return amount * std::exp(-(u - at) * (u - at) / (2 * width * width));
@@ -108,7 +119,7 @@ EffectKind empirical_kind() {
   return {"empirical",
           {{"acts", {"dose", "shift_x", "shift_y"}},
            {"axis", {"x", "y", "z", "layer", "direction", "density", "edge_distance", "position"}},
-           {"form", {"trend", "periodic", "step", "window", "local"}}},
+           {"form", {"trend", "periodic", "pulse", "step", "window", "local"}}},
           {{"amount", 1, -5, 5, 0, 0, true},
            {"wave", 2, -5, 5, 0, 0, true},
            {"from", 1, -kFar, kFar, 0, 0, true},

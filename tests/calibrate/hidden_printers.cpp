@@ -97,6 +97,8 @@ std::vector<Printer> nameless() {
   };
   out.push_back(named("half of the bed", {}, {"x"}));
   out.back().gain = [](const At& at) { return at.x > 5.3 ? 1.12 : 1.0; };
+  out.push_back(named("every sixth layer", {}, {"layer"}));
+  out.back().gain = [](const At& at) { return at.layer % 6 == 2 ? 0.82 : 1.0; };
   out.push_back(named("belt wave", {}, {"x", "y"}));
   out.back().shift_mm = [](const At& at) {
     return std::array<double, 2>{0.05 * std::sin(kTurn * at.y / 6.7), 0};

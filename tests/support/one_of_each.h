@@ -36,6 +36,9 @@ inline std::vector<EffectSpec> one_of_each() {
            {{"acts", "shift_x"}, {"axis", "y"}, {"form", "periodic"}},
            {{"period", {0.9}}, {"wave", {0.1, 0.05}}}},
           {"empirical",
+           {{"acts", "dose"}, {"axis", "layer"}, {"form", "pulse"}},
+           {{"period", {3}}, {"at", {1}}, {"width", {1}}, {"amount", {-0.4}}}},
+          {"empirical",
            {{"acts", "dose"}, {"axis", "position"}, {"form", "local"}},
            {{"center_mm", {1.5, 1}}, {"at", {0}}, {"width", {0.5}}, {"amount", {0.4}}}}};
 }

@@ -4,6 +4,7 @@
 
 #include "slicer/calibrate/dose_probe.h"
 #include "slicer/density.h"
+#include "slicer/effects/jet_out.h"
 #include "slicer/effects/model.h"
 #include "slicer/error.h"
 #include "tests/support/one_of_each.h"
@@ -76,6 +77,40 @@ TEST(PlacedEffects, LosesARowWhoseJetIsOut) {
   EXPECT_TRUE(out.row(9).empty());
   EXPECT_TRUE(out.row(10).empty());
   EXPECT_EQ(out.row(11).size(), 2U);
+}
+
+TEST(PlacedEffects, WeakensRowsAroundAJetByTheBinderThatTheyWouldGetFromIt) {
+  RunLayer without(40);
+  for (int y = 0; y < 20; ++y) {
+    without.append_row(y == 10 ? std::vector<int>{} : std::vector<int>{15, 25});
+  }
+  const PrinterModel plain({kSpread, kThreshold}, kGrid, {{0, 0}, {4, 2}});
+  const PrinterModel out =
+      model({"jet_out", {}, {{"from_mm", {1.0}}, {"to_mm", {1.1}}, {"amount", {-1}}}});
+  EXPECT_EQ(out.print(bar()), plain.print(without));
+  // Half of a jet's row, whatever the grid: half as much is missing in all.
+  const ModelForm& form = plain.form();
+  const auto whole_row = share_from_jets(form, kGrid, 1.0, 1.1);
+  const auto half_row = share_from_jets(form, kGrid, 1.0, 1.05);
+  double whole = 0;
+  double half = 0;
+  for (int y = 0; y < 20; ++y) {
+    whole += whole_row((y + 0.5) * 0.1);
+    half += half_row((y + 0.5) * 0.1);
+  }
+  EXPECT_NEAR(whole, 1, 1e-9);
+  EXPECT_NEAR(half, 0.5, 1e-9);
+}
+
+TEST(PlacedEffects, PulsesInOneOfSoManyLayers) {
+  const EffectSpec pulse{"empirical",
+                         {{"acts", "dose"}, {"axis", "layer"}, {"form", "pulse"}},
+                         {{"amount", {-0.4}}, {"period", {7}}, {"at", {3}}, {"width", {1}}}};
+  for (int layer = 0; layer < 30; ++layer) {
+    const bool weak = layer % 7 == 3;
+    EXPECT_EQ(printed(pulse, layer), weak ? (std::vector<int>{17, 23}) : (std::vector<int>{15, 25}))
+        << "layer " << layer;
+  }
 }
 
 TEST(PlacedEffects, KnowsWhereTheJobIsOnTheBed) {
