@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "slicer/masks.h"
 
+#include <functional>
 #include <utility>
+#include <vector>
 
 #include "slicer/enhance/inverse.h"
 #include "slicer/enhance/paper_rule.h"
@@ -34,6 +36,37 @@ std::unique_ptr<Stream<PassLayer>> with_print(std::unique_ptr<Stream<SlicedLayer
         const SlicedLayer& here = *window[window.size() / 2];
         return PassLayer{here.target, here.volume, model->print(masks, layer)};
       });
+}
+
+// A step of the inverse solver; every so many layers have their turn.
+struct InverseTurn {
+  int every;
+  int which;
+  std::function<InverseLayer(const InverseSolver&, LayerWindow)> work;
+};
+
+std::vector<InverseTurn> inverse_turns(const InverseSolver& solver) {
+  std::vector<InverseTurn> turns;
+  const auto add_round = [&](int every, const auto& work) {
+    for (int which = 0; which < every; ++which) turns.push_back({every, which, work});
+  };
+  const auto add_rescue = [&](int every, RescueAim aim) {
+    add_round(every, [aim](const InverseSolver& by, LayerWindow layers) {
+      return by.rescue(layers, aim);
+    });
+  };
+  const auto improve = [](bool anew) {
+    return [anew](const InverseSolver& by, LayerWindow layers) { return by.improve(layers, anew); };
+  };
+  const int stride = solver.stride();
+  add_round(stride, improve(true));
+  if (stride > 1 || solver.follows_density()) add_round(stride, improve(false));
+  add_rescue(stride, RescueAim::features);
+  // What spans two layers takes one round for each.
+  add_rescue(stride, RescueAim::pieces);
+  add_rescue(stride, RescueAim::pieces);
+  add_rescue(solver.leftovers_stride(), RescueAim::leftovers);
+  return turns;
 }
 
 // How many layers above and below a layer `passes` passes look at.
@@ -89,25 +122,23 @@ std::unique_ptr<Stream<MaskLayer>> paper_masks(TargetFrom target_from, const Gri
 std::unique_ptr<Stream<MaskLayer>> inverse_masks(TargetFrom target_from, LayerRange layers,
                                                  int job_layers,
                                                  std::shared_ptr<const InverseSolver> solver) {
-  const int turns = solver->stride();
-  const int improving = turns * (turns == 1 && !solver->follows_density() ? 1 : 2);
-  const int steps = improving + 3 * turns;
+  const std::vector<InverseTurn> turns = inverse_turns(*solver);
   const LayerRange settled = grown(layers, solver->print_reach(), job_layers);
-  const auto range_with = [&](int steps_left) {
-    return grown(settled, steps_left * solver->reach(), job_layers);
+  const auto range_with = [&](std::size_t turns_left) {
+    return grown(settled, static_cast<int>(turns_left) * solver->reach(), job_layers);
   };
   using First = Step<VoxelLayer, InverseLayer>;
   std::unique_ptr<Stream<InverseLayer>> improved = std::make_unique<First>(
-      target_from(range_with(steps)), range_with(steps), 0, job_layers,
+      target_from(range_with(turns.size())), range_with(turns.size()), 0, job_layers,
       [solver](int layer, First::Window window) { return solver->plain(layer, window[0]); });
 
   using Improve = Step<InverseLayer, InverseLayer>;
-  for (int step = 0; step < steps; ++step) {
+  for (std::size_t i = 0; i < turns.size(); ++i) {
     improved = std::make_unique<Improve>(
-        std::move(improved), range_with(steps - step - 1), solver->reach(), job_layers,
-        [=](int layer, Improve::Window window) {
-          if (layer % turns != step % turns) return *window[window.size() / 2];
-          return step < improving ? solver->improve(window, step < turns) : solver->rescue(window);
+        std::move(improved), range_with(turns.size() - i - 1), solver->reach(), job_layers,
+        [solver, turn = turns[i]](int layer, Improve::Window window) {
+          return layer % turn.every == turn.which ? turn.work(*solver, window)
+                                                  : *window[window.size() / 2];
         });
   }
   improved = std::make_unique<Improve>(

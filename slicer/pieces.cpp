@@ -83,17 +83,11 @@ void PieceCounter::add(const VoxelLayer& target, const RunLayer& printed) {
   for (const RunLayer& slice : target.slices) {
     const std::vector<int>& parts = parts_.add(slice);
     contacts_.add(slice, parts, printed);
-    std::size_t part_begin = 0;
-    std::size_t piece_begin = 0;
-    for (int y = 0; y < slice.height(); ++y) {
-      rows::for_each_overlap(slice.row(y), printed.row(y), [&](std::size_t i, std::size_t j) {
-        const auto part = static_cast<std::size_t>(parts[part_begin + i]);
-        if (part >= pieces_of_.size()) pieces_of_.resize(part + 1);
-        pieces_of_[part].insert(pieces[piece_begin + j]);
-      });
-      part_begin += slice.row(y).size() / 2;
-      piece_begin += printed.row(y).size() / 2;
-    }
+    for_each_shared(slice, parts, printed, pieces, [&](int part, int piece, auto...) {
+      const auto at = static_cast<std::size_t>(part);
+      if (at >= pieces_of_.size()) pieces_of_.resize(at + 1);
+      pieces_of_[at].insert(piece);
+    });
   }
 }
 

@@ -3,6 +3,7 @@
 // the layers pass by.
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
 #include <map>
 #include <set>
@@ -10,6 +11,7 @@
 
 #include "slicer/contacts.h"
 #include "slicer/regions.h"
+#include "slicer/rows.h"
 #include "slicer/run_layer.h"
 #include "slicer/voxelize.h"
 
@@ -35,6 +37,25 @@ class RegionNumbers {
   std::vector<int> parent_;     // by number; itself at the root
   std::vector<Region> region_;  // by number: the runs that were given it
 };
+
+// Calls take(part, piece, first, last, y) for each stretch of row y that lies in a run of the
+// target and in one of the print, with their numbers.
+template <class Take>
+void for_each_shared(const RunLayer& target, const std::vector<int>& parts, const RunLayer& printed,
+                     const std::vector<int>& pieces, Take take) {
+  std::size_t part_begin = 0;
+  std::size_t piece_begin = 0;
+  for (int y = 0; y < target.height(); ++y) {
+    const rows::Row wanted = target.row(y);
+    const rows::Row row = printed.row(y);
+    rows::for_each_overlap(wanted, row, [&](std::size_t i, std::size_t j) {
+      take(parts[part_begin + i], pieces[piece_begin + j], std::max(wanted[2 * i], row[2 * j]),
+           std::min(wanted[2 * i + 1], row[2 * j + 1]), y);
+    });
+    part_begin += wanted.size() / 2;
+    piece_begin += row.size() / 2;
+  }
+}
 
 // All regions are in voxels and slices.
 class PieceCounter {

@@ -8,8 +8,6 @@
 // mask that prints any layer worse than the plain masks do is dropped.
 #pragma once
 
-#include <algorithm>
-#include <map>
 #include <memory>
 #include <vector>
 
@@ -17,6 +15,7 @@
 #include "slicer/enhance/inverse_layer.h"
 #include "slicer/enhance/layer_search.h"
 #include "slicer/enhance/mask_rules.h"
+#include "slicer/enhance/rescue.h"
 #include "slicer/grid.h"
 
 namespace binderjet {
@@ -40,12 +39,13 @@ class InverseSolver {
   InverseSolver(std::vector<PrinterModel> window, const Grid& grid, const MaskRules& rules);
 
   // How many layers on each side of a layer improve() and rescue() look at.
-  int reach() const { return std::max(2, 2 * search_.printer.window_reach() + 1); }
+  int reach() const { return 2 * search_.printer.window_reach() + 2; }
   // The same for settle().
   int print_reach() const { return search_.printer.window_reach(); }
   // Layers so many apart (or a multiple) print into no common layer, so all of them may be improved
-  // at once and none spoils what another one saw.
+  // at once and none spoils what another one saw; leftovers are seen from one layer further.
   int stride() const { return stride_; }
+  int leftovers_stride() const { return stride_ + 2; }
   // Whether a layer's print also depends on other layers' masks through their density, which a
   // search takes as it is: then layers are to be improved again.
   bool follows_density() const {
@@ -57,9 +57,9 @@ class InverseSolver {
   // The middle layer with a better mask; `anew` forgets its mask so far. No layer prints worse than
   // with plain masks, unless it did before (nominal model, wrong voxels).
   InverseLayer improve(LayerWindow layers, bool anew) const;
-  // The same with fewer voxels of lost and fused features (slicer/features.h), and of what is
-  // printed where no part is, if there are any.
-  InverseLayer rescue(LayerWindow layers) const;
+  // The same with fewer faults that voxels alone do not show (slicer/enhance/rescue.h), if it has
+  // any.
+  InverseLayer rescue(LayerWindow layers, RescueAim aim) const;
   // The middle layer without what prints where no part is, if anything still does once the others
   // are as they are; with its plain mask again if its print is worse than plain.
   InverseLayer settle(LayerWindow layers) const;
@@ -67,11 +67,7 @@ class InverseSolver {
   PixelReasons reasons(LayerWindow layers, int x, int y) const;
 
  private:
-  bool acceptable(LayerWindow layers, const RunLayer& mask) const;
   Shared<RunLayer> without_spurious(LayerWindow layers) const;
-  LayerFaults faults(LayerWindow layers, int offset, const RunLayer& mask) const;
-  // Of all layers whose print the middle one's mask changes, by offset.
-  std::map<int, Shared<LayerFaults>> all_faults(LayerWindow layers, const RunLayer& mask) const;
 
   std::vector<PrinterModel> window_;
   SearchModel search_;

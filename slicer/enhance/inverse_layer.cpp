@@ -1,7 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "slicer/enhance/inverse_layer.h"
 
+#include <algorithm>
 #include <vector>
+
+#include "slicer/score.h"
 
 namespace binderjet {
 namespace {
@@ -55,6 +58,23 @@ RunLayer print_with(LayerWindow layers, int offset, const PrinterModel& model,
                     const RunLayer& own) {
   return print(layers, offset, model, [&own](const InverseLayer& layer, int at) {
     return at == 0 ? &own : layer.mask.get();
+  });
+}
+
+std::int64_t wrong_voxels(const InverseLayer& layer, const RunLayer& printed) {
+  const VoxelCounts counts = count_voxels(*layer.target, printed);
+  return counts.missing + counts.extra;
+}
+
+bool no_worse_than_plain(LayerWindow layers, const PrinterModel& model, const ModelOffsets& offsets,
+                         const RunLayer& own) {
+  return std::all_of(offsets.printed.begin(), offsets.printed.end(), [&](int offset) {
+    const InverseLayer* layer = layer_at(layers, offset);
+    if (layer == nullptr) return true;
+    const std::int64_t now = wrong_voxels(*layer, print_with(layers, offset, model, own));
+    if (now <= wrong_voxels(*layer, print_plain(layers, offset, model))) return true;
+    const RunLayer& before = *layer_at(layers, 0)->mask;
+    return now <= wrong_voxels(*layer, print_with(layers, offset, model, before));
   });
 }
 

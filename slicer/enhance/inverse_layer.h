@@ -2,11 +2,13 @@
 // A layer on its way through the inverse solver, and what a window of layers prints.
 #pragma once
 
+#include <cstdint>
 #include <set>
 #include <span>
 #include <vector>
 
 #include "slicer/effects/model.h"
+#include "slicer/enhance/breaks.h"
 #include "slicer/features.h"
 #include "slicer/run_layer.h"
 #include "slicer/stream.h"
@@ -18,6 +20,7 @@ namespace binderjet {
 struct LayerFaults {
   LayerFeatures gone;  // lost and fused, under the nominal model
   RunLayer barren;     // printed where no part is, under any model of the window
+  Breaks breaks;       // seen from the layers beside it, under the nominal model
 };
 
 // Shared, for most steps change one of its parts only.
@@ -52,5 +55,12 @@ std::vector<const RunLayer*> masks_around(LayerWindow layers, int offset,
 // so far but `own` for the middle layer.
 RunLayer print_plain(LayerWindow layers, int offset, const PrinterModel& model);
 RunLayer print_with(LayerWindow layers, int offset, const PrinterModel& model, const RunLayer& own);
+
+// Voxels of all its slices that come out wrong.
+std::int64_t wrong_voxels(const InverseLayer& layer, const RunLayer& printed);
+// Whether with this mask for the middle layer none of the layers that it prints into has more wrong
+// voxels than with plain masks, or than it has now.
+bool no_worse_than_plain(LayerWindow layers, const PrinterModel& model, const ModelOffsets& offsets,
+                         const RunLayer& own);
 
 }  // namespace binderjet

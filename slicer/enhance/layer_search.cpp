@@ -76,9 +76,12 @@ void LayerSearch::find_tiles() {
   }
 }
 
-void LayerSearch::run(bool anew) { search(tiles_, anew); }
+void LayerSearch::run(bool anew) {
+  const SearchStart start;
+  search(tiles_, anew ? &start : nullptr);
+}
 
-void LayerSearch::run_near(std::span<const RunLayer* const> places) {
+void LayerSearch::run_near(std::span<const RunLayer* const> places, const SearchStart& start) {
   std::vector<Tile> near;
   for (const Tile& tile : tiles_) {
     const std::array<int, 2> r{by_.grid.detail_vx[0], by_.grid.detail_vx[1]};
@@ -88,12 +91,12 @@ void LayerSearch::run_near(std::span<const RunLayer* const> places) {
                                      [&](const RunLayer* place) { return meets(*place, voxels); });
     if (is_near) near.push_back({tile.rect, {}});
   }
-  search(near, true);
+  search(near, &start);
 }
 
-void LayerSearch::search(std::span<Tile> tiles, bool anew) {
+void LayerSearch::search(std::span<Tile> tiles, const SearchStart* anew) {
   for (Tile& tile : tiles) look_over(tile, anew);
-  if (anew) {
+  if (anew != nullptr) {
     // What a tile leaves of an island or a hole may lie beside it.
     const int most = by_.rules.most();
     for (const Tile& tile : tiles) {
@@ -104,21 +107,51 @@ void LayerSearch::search(std::span<Tile> tiles, bool anew) {
 }
 
 // Finds the pixels to search on. Where all that a pixel can do is good, or all is bad, it is
-// settled; else, to begin with, it is on if a straight edge through what it reaches wants it on.
-void LayerSearch::look_over(Tile& tile, bool anew) {
+// settled.
+void LayerSearch::look_over(Tile& tile, const SearchStart* anew) {
   TileSurroundings around(layers_, by_.offsets, places_, mask_);
   const LocalDose dose(by_.models, by_.grid, tile.rect, around);
   around.look_at(dose);
   std::map<int, ChangeCount> changes;
   for (const int offset : by_.offsets.printed) changes.emplace(offset, around.cost(offset, true));
   tile.pixels.clear();
+  Plane<double> wanted(tile.rect);
   for (int y = tile.rect.y0; y < tile.rect.y1; ++y) {
     for (int x = tile.rect.x0; x < tile.rect.x1; ++x) {
       const PixelSight sight = look(dose, around, changes, x, y);
       const bool open = sight.least_cost < 0 && sight.most_cost > 0;
       if (open) tile.pixels.push_back({x, y});
-      if (!anew) continue;
-      *mask_.at(x, y) = open ? sight.wanted >= wanted_at(x, y) : sight.least_cost < 0;
+      *wanted.at(x, y) = open ? sight.wanted : sight.least_cost < 0;
+    }
+  }
+  if (anew != nullptr) begin(tile, wanted, *anew, dose);
+}
+
+// A pixel is on if a straight edge through what it reaches wants it on. A feature narrower than the
+// spread has no such pixel, and flips of single pixels would never bring it about: there those are
+// on that come as near to it, compared with the best around them. Half the spread's reach is where
+// that begins to change a straight edge, so half of that is looked at.
+void LayerSearch::begin(const Tile& tile, const Plane<double>& wanted, const SearchStart& start,
+                        const LocalDose& dose) {
+  if (start.mask != nullptr) {
+    Plane<std::uint8_t> from(tile.rect);
+    add_layer(*start.mask, std::uint8_t{1}, from);
+    for (const auto& [x, y] : tile.pixels) *mask_.at(x, y) = *from.at(x, y);
+    return;
+  }
+  const auto [reach_x, reach_y] = dose.pixel_reach();
+  const Rect& rect = tile.rect;
+  for (int y = rect.y0; y < rect.y1; ++y) {
+    for (int x = rect.x0; x < rect.x1; ++x) {
+      const Rect near =
+          Rect{x, y, x + 1, y + 1}.grown((reach_x + 3) / 4, (reach_y + 3) / 4).cut(rect);
+      double most = 0;
+      for (int v = near.y0; v < near.y1; ++v) {
+        most = std::max(
+            most, *std::max_element(wanted.at(near.x0, v), wanted.at(near.x0, v) + near.width()));
+      }
+      const double share = *wanted.at(x, y);
+      *mask_.at(x, y) = share > 0 && share >= most * wanted_at(x, y) * start.share;
     }
   }
 }

@@ -28,6 +28,12 @@ struct SearchModel {
   Grid grid;
 };
 
+// Where a search begins.
+struct SearchStart {
+  const RunLayer* mask = nullptr;  // if not null, with this mask
+  double share = 1;                // else as a straight edge wants it, of which this much is enough
+};
+
 class LayerSearch {
  public:
   // On the middle one of the layers; both must outlive this. It begins with the mask so far.
@@ -35,8 +41,9 @@ class LayerSearch {
 
   // Searches the whole layer; `anew` forgets its mask so far.
   void run(bool anew);
-  // Searches anew where pixels reach what is 1 in any of these layers, on the voxel grid.
-  void run_near(std::span<const RunLayer* const> places);
+  // Searches from this start where pixels reach what is 1 in any of these layers, on the voxel
+  // grid.
+  void run_near(std::span<const RunLayer* const> places, const SearchStart& start);
 
   RunLayer mask() const { return to_layer(mask_, box_.x1, box_.y1); }
 
@@ -47,8 +54,11 @@ class LayerSearch {
   };
 
   void find_tiles();
-  void search(std::span<Tile> tiles, bool anew);
-  void look_over(Tile& tile, bool anew);
+  // Without `anew` both keep the mask so far.
+  void search(std::span<Tile> tiles, const SearchStart* anew);
+  void look_over(Tile& tile, const SearchStart* anew);
+  void begin(const Tile& tile, const Plane<double>& wanted, const SearchStart& start,
+             const LocalDose& dose);
   double wanted_at(int x, int y) const;
   void search(const Tile& tile);
 

@@ -102,9 +102,13 @@ class LocalDose {
 
   // Where a stamp that lands there begins.
   template <class P>
-  auto under(P& plane, const Stamp& stamp, int x, int y, const Landing& landing = {}) const {
+  auto under(P& plane, const Stamp& stamp, int x, int y, const Landing& landing) const {
     return plane.at(x * repeat_[0] + landing.by[0] + stamp.first[0],
                     y * repeat_[1] + landing.by[1] + stamp.first[1]);
+  }
+  template <class P>
+  auto under(P& plane, const Stamp& stamp, int x, int y) const {
+    return under(plane, stamp, x, y, Landing());
   }
   StampOverlay overlay(const Field& field, int x, int y, int sign) const;
 

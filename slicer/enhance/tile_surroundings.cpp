@@ -21,6 +21,7 @@ void TileSurroundings::look_at(const LocalDose& dose) {
     for (const Shared<LayerFaults>& faults : layer->stressed) {
       for (const RunLayer& slice : faults->gone.lost) add_layer(slice, -kStress, stressed);
       for (const RunLayer& slice : faults->gone.fused) add_layer(slice, kStress, stressed);
+      add_layer(faults->breaks.gap, -kStress, stressed);
     }
   }
   for (const int offset : offsets_.masks) {

@@ -5,10 +5,13 @@
 #include <gtest/gtest.h>
 #include <oneapi/tbb/global_control.h>
 
+#include <cstdlib>
 #include <numeric>
 
 #include "slicer/effects/process_window.h"
+#include "slicer/features.h"
 #include "slicer/masks.h"
+#include "slicer/pieces.h"
 #include "slicer/score.h"
 #include "tests/support/mask_regions.h"
 #include "tests/support/one_of_each.h"
@@ -208,6 +211,54 @@ TEST(Inverse, PrintsATenthOfThePlainErrorAtALowLevel) {
             << '\n';
   EXPECT_LE(10 * inverse, plain);
   EXPECT_LE(4 * inverse, paper);
+}
+
+// A base with spires as narrow as a voxel at their tips and a thin wall that leans over: all
+// narrower than the spread.
+Case spires(double level) {
+  Case c;
+  c.grid = {{0.1, 0.1, 0.1}, {2, 2, 2}};
+  c.layers = 12;
+  c.target = Volume(120, 120, 24);
+  c.target.fill([](int x, int y, int z) {
+    if (z < 4) return x >= 20 && y >= 20 && x < 100 && y < 100;
+    const int half = (26 - z) / 4;
+    for (const int middle : {35, 55}) {
+      if (std::abs(x - middle) <= half && std::abs(y - 40) <= half / 2) return true;
+    }
+    return x >= 40 + z && x < 43 + z && y >= 60 && y < 90;
+  });
+  c.window = process_window({{"spread", {{"shape", "box"}}, {{"width_mm", {0.7, 0.5}}}},
+                             {"threshold", {}, {{"level", {level}}}}},
+                            c.grid);
+  return c;
+}
+
+TEST(Inverse, PrintsWhatIsNarrowerThanTheSpreadAndInOnePiece) {
+  for (const double level : {0.25, 0.5}) {
+    SCOPED_TRACE(level);
+    const Case c = spires(level);
+    const Volume masks = streamed(c, {0, c.layers}, kBlockLayers);
+    const Volume printed = whole::print(masks, c.model().form(), c.grid);
+    const auto target =
+        whole::voxel_stream(c.target, c.grid.detail_vx[2], {0, c.layers})->next(c.layers);
+    std::vector<ComparedLayer> layers;
+    PieceCounter pieces;
+    for (int k = 0; k < c.layers; ++k) {
+      layers.push_back({target[static_cast<std::size_t>(k)],
+                        std::make_shared<const RunLayer>(whole::slice(printed, k))});
+      pieces.add(*layers.back().target, *layers.back().printed);
+    }
+    EXPECT_EQ(pieces.separated(), 0);
+    for (std::size_t k = 0; k < layers.size(); ++k) {
+      const LayerFeatures gone =
+          find_features(k == 0 ? nullptr : &layers[k - 1], layers[k],
+                        k + 1 == layers.size() ? nullptr : &layers[k + 1], c.grid);
+      for (const RunLayer& slice : gone.lost) EXPECT_EQ(slice.count(), 0) << "lost in layer " << k;
+      for (const RunLayer& slice : gone.fused)
+        EXPECT_EQ(slice.count(), 0) << "fused in layer " << k;
+    }
+  }
 }
 
 TEST(Inverse, AnswersBinderThatSoaksIntoTheLayersBelow) {

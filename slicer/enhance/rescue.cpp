@@ -1,0 +1,201 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "slicer/enhance/rescue.h"
+
+#include <algorithm>
+#include <array>
+#include <cstdint>
+#include <set>
+#include <utility>
+#include <vector>
+
+#include "slicer/enhance/breaks.h"
+#include "slicer/enhance/mask_patch.h"
+#include "slicer/enhance/spurious.h"
+#include "slicer/regions.h"
+#include "slicer/rows.h"
+
+namespace binderjet {
+namespace {
+
+// What a fault weighs, in voxels: a piece that comes off is seen as one by up to three layers and
+// spoils a part; a feature that is gone spoils itself.
+constexpr std::int64_t kBreakWeight = 1000;
+constexpr std::int64_t kFeatureWeight = 500;
+// The last resort changes pixels up to this far around a piece.
+constexpr int kMostPatchPx = 7;
+
+using FaultsByOffset = std::map<int, Shared<LayerFaults>>;
+
+std::int64_t weight_of(const std::vector<RunLayer>& gone) {
+  RegionFinder finder;
+  std::size_t regions = 0;
+  std::int64_t voxels = 0;
+  for (const RunLayer& slice : gone) {
+    regions += finder.add(slice).size();
+    voxels += slice.count();
+  }
+  regions += finder.finish().size();
+  return kFeatureWeight * static_cast<std::int64_t>(regions) + voxels;
+}
+
+RunLayer united(const RunLayer& a, const RunLayer& b) {
+  RunLayer sum(a.width());
+  std::vector<int> row;
+  for (int y = 0; y < a.height(); ++y) {
+    rows::unite(a.row(y), b.row(y), row);
+    sum.append_row(row);
+  }
+  return sum;
+}
+
+class Rescue {
+ public:
+  Rescue(const SearchModel& by, std::span<const PrinterModel> window, LayerWindow layers,
+         RescueAim aim)
+      : by_(by), window_(window), layers_(layers), aim_(aim), out_(*layer_at(layers, 0)) {}
+
+  InverseLayer run() {
+    if (weight(faults_near(0, *out_.mask)) == 0) return out_;
+    const FaultsByOffset before = faults(*out_.mask);
+    least_ = weight(before);
+    search(before);
+    if (least_ > 0 && aim_ == RescueAim::leftovers) patch(before);
+    return out_;
+  }
+
+ private:
+  std::int64_t weight(const FaultsByOffset& all) const;
+  LayerFaults faults_of(int offset, const RunLayer& mask,
+                        std::map<int, ComparedLayer>& compared) const;
+  FaultsByOffset faults_near(int beside, const RunLayer& mask) const;
+  // Of all layers that this round looks at.
+  FaultsByOffset faults(const RunLayer& mask) const {
+    return faults_near(aim_ == RescueAim::leftovers ? 1 : 0, mask);
+  }
+  bool take(RunLayer mask);
+  void search(const FaultsByOffset& before);
+  void patch(const FaultsByOffset& before);
+  bool patch(const std::vector<const RunLayer*>& places, const RunLayer& with);
+
+  const SearchModel& by_;
+  std::span<const PrinterModel> window_;
+  LayerWindow layers_;
+  RescueAim aim_;
+  InverseLayer out_;
+  std::int64_t least_ = 0;  // the weight of what is wrong with its mask so far
+};
+
+std::int64_t Rescue::weight(const FaultsByOffset& all) const {
+  std::int64_t sum = 0;
+  for (const auto& [offset, of] : all) {
+    sum += weight_of(of->gone.lost) + weight_of(of->gone.fused) + of->barren.count();
+    if (aim_ != RescueAim::features) sum += kBreakWeight * of->breaks.count;
+  }
+  return sum;
+}
+
+// As `score` finds them; breaks as three layers show them.
+LayerFaults Rescue::faults_of(int offset, const RunLayer& mask,
+                              std::map<int, ComparedLayer>& compared) const {
+  std::array<const ComparedLayer*, 3> seen{};
+  for (int near = offset - 1; near <= offset + 1; ++near) {
+    const InverseLayer* layer = layer_at(layers_, near);
+    if (layer == nullptr) continue;
+    if (!compared.contains(near)) {
+      compared[near] = {layer->target, std::make_shared<const RunLayer>(
+                                           print_with(layers_, near, by_.printer, mask))};
+    }
+    seen[static_cast<std::size_t>(near - offset + 1)] = &compared[near];
+  }
+  const VoxelLayer& target = *seen[1]->target;
+  LayerFaults out{find_features(seen[0], *seen[1], seen[2], by_.grid),
+                  spurious_print(target, *seen[1]->printed), find_breaks(seen)};
+  for (const PrinterModel& model : window_.subspan(1)) {
+    const RunLayer more = spurious_print(target, print_with(layers_, offset, model, mask));
+    if (more.count() > 0) out.barren = united(out.barren, more);
+  }
+  return out;
+}
+
+// Of the layers whose print the mask changes and so many on each side.
+FaultsByOffset Rescue::faults_near(int beside, const RunLayer& mask) const {
+  FaultsByOffset out;
+  std::map<int, ComparedLayer> compared;
+  const std::set<int>& printed = by_.offsets.printed;
+  for (int offset = *printed.begin() - beside; offset <= *printed.rbegin() + beside; ++offset) {
+    if (layer_at(layers_, offset) == nullptr) continue;
+    out.emplace(offset, std::make_shared<const LayerFaults>(faults_of(offset, mask, compared)));
+  }
+  return out;
+}
+
+// Takes the mask if less is wrong with it; true if nothing is.
+bool Rescue::take(RunLayer mask) {
+  const std::int64_t now = weight(faults(mask));
+  if (now < least_ && no_worse_than_plain(layers_, by_.printer, by_.offsets, mask)) {
+    out_.mask = std::make_shared<const RunLayer>(std::move(mask));
+    least_ = now;
+  }
+  return least_ == 0;
+}
+
+void Rescue::search(const FaultsByOffset& before) {
+  std::vector<Shared<InverseLayer>> with_stress(layers_.begin(), layers_.end());
+  std::vector<const RunLayer*> places;
+  for (const auto& [offset, faults] : before) {
+    InverseLayer layer = *layer_at(layers_, offset);
+    layer.stressed.push_back(faults);
+    if (offset == 0) out_.stressed.push_back(faults);
+    const auto middle = static_cast<std::ptrdiff_t>(layers_.size() / 2);
+    with_stress[static_cast<std::size_t>(middle + offset)] =
+        std::make_shared<const InverseLayer>(std::move(layer));
+    for (const RunLayer& slice : faults->gone.lost) places.push_back(&slice);
+    for (const RunLayer& slice : faults->gone.fused) places.push_back(&slice);
+    places.insert(places.end(), {&faults->barren, &faults->breaks.gap, &faults->breaks.loose});
+  }
+  std::vector<SearchStart> starts{{}, {.share = 0.5}, {.share = 0.01}};
+  for (const int beside : {-1, 1}) {
+    const InverseLayer* layer = layer_at(layers_, beside);
+    if (layer != nullptr) starts.push_back({.mask = layer->mask.get()});
+  }
+  starts.push_back({.mask = out_.plain.get()});
+  for (const SearchStart& start : starts) {
+    LayerSearch search(by_, with_stress);
+    search.run_near(places, start);
+    if (take(search.mask())) return;
+  }
+}
+
+// Where no search helped: the plain mask's pixels around what breaks, or none.
+void Rescue::patch(const FaultsByOffset& before) {
+  std::vector<const RunLayer*> loose;
+  std::vector<const RunLayer*> broken;
+  for (const auto& [offset, faults] : before) {
+    if (faults->breaks.count == 0) continue;
+    loose.push_back(&faults->breaks.loose);
+    broken.insert(broken.end(), {&faults->breaks.loose, &faults->breaks.gap});
+  }
+  if (broken.empty() || patch(broken, *out_.plain)) return;
+  patch(loose, RunLayer::powder(out_.plain->width(), out_.plain->height()));
+}
+
+bool Rescue::patch(const std::vector<const RunLayer*>& places, const RunLayer& with) {
+  for (int around_px = 0; around_px <= kMostPatchPx; around_px = 2 * around_px + 1) {
+    std::vector<Rect> near;
+    for (const RunLayer* place : places) {
+      const std::vector<Rect> more = pixels_around(*place, by_.grid, around_px);
+      near.insert(near.end(), more.begin(), more.end());
+    }
+    if (take(patched(*out_.mask, with, near, by_.rules))) return true;
+  }
+  return false;
+}
+
+}  // namespace
+
+InverseLayer rescued(const SearchModel& by, std::span<const PrinterModel> window,
+                     LayerWindow layers, RescueAim aim) {
+  return Rescue(by, window, layers, aim).run();
+}
+
+}  // namespace binderjet

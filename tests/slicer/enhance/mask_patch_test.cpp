@@ -1,0 +1,47 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Pieces of one mask put into another.
+#include "slicer/enhance/mask_patch.h"
+
+#include <gtest/gtest.h>
+
+#include <array>
+
+namespace binderjet {
+namespace {
+
+RunLayer rows_of(std::initializer_list<std::vector<int>> rows) {
+  RunLayer layer(8);
+  for (const std::vector<int>& row : rows) layer.append_row(row);
+  return layer;
+}
+
+TEST(MaskPatch, PlacesAreThePixelsOfTheVoxelsAndWhatIsAroundThem) {
+  const Grid grid{{0.1, 0.1, 0.1}, {2, 3, 2}};
+  RunLayer voxels(16);
+  for (int y = 0; y < 9; ++y)
+    voxels.append_row(y == 4 ? std::vector<int>{5, 8} : std::vector<int>{});
+  const std::vector<Rect> places = pixels_around(voxels, grid, 1);
+  ASSERT_EQ(places.size(), 1U);
+  EXPECT_EQ(places[0].x0, 1);
+  EXPECT_EQ(places[0].x1, 5);
+  EXPECT_EQ(places[0].y0, 0);
+  EXPECT_EQ(places[0].y1, 3);
+}
+
+TEST(MaskPatch, TakesTheOthersPixelsThereAndItsOwnElsewhere) {
+  const RunLayer mask = rows_of({{0, 8}, {0, 8}, {0, 8}});
+  const RunLayer with = rows_of({{0, 1}, {}, {}});
+  const std::array places{Rect{-3, 0, 3, 2}};
+  EXPECT_EQ(patched(mask, with, places, {}), rows_of({{0, 1, 3, 8}, {3, 8}, {0, 8}}));
+}
+
+TEST(MaskPatch, ObeysTheRules) {
+  const RunLayer mask = rows_of({{0, 8}, {0, 8}, {0, 8}});
+  const RunLayer with = rows_of({{0, 1}, {}, {}});
+  const std::array places{Rect{0, 0, 3, 3}};
+  // The island of one pixel goes.
+  EXPECT_EQ(patched(mask, with, places, {4, 4}), rows_of({{3, 8}, {3, 8}, {3, 8}}));
+}
+
+}  // namespace
+}  // namespace binderjet
