@@ -8,6 +8,7 @@
 
 #include "driver/layer_blocks.h"
 #include "driver/picture_rows.h"
+#include "slicer/coupon_shapes.h"
 #include "slicer/stack/png.h"
 #include "slicer/stack/zip_writer.h"
 
@@ -86,27 +87,14 @@ std::string box_text(const std::array<double, 3>& size_mm) {
   std::string text =
       fmt::format("  <object id=\"{}\" type=\"model\" name=\"box\">\n   <mesh>\n", kBox);
   text += "    <vertices>\n";
-  for (int corner = 0; corner < 8; ++corner) {
-    text += fmt::format("     <vertex x=\"{}\" y=\"{}\" z=\"{}\"/>\n",
-                        (corner & 1) != 0 ? size_mm[0] : 0, (corner & 2) != 0 ? size_mm[1] : 0,
-                        (corner & 4) != 0 ? size_mm[2] : 0);
+  Mesh box;
+  add_box(box, {0, 0, 0}, size_mm);
+  for (const Point& p : box.points) {
+    text += fmt::format("     <vertex x=\"{}\" y=\"{}\" z=\"{}\"/>\n", p[0], p[1], p[2]);
   }
   text += "    </vertices>\n    <triangles>\n";
-  constexpr std::array<std::array<int, 3>, 12> kFaces = {{{0, 2, 1},
-                                                          {1, 2, 3},
-                                                          {4, 5, 6},
-                                                          {5, 7, 6},
-                                                          {0, 1, 4},
-                                                          {1, 5, 4},
-                                                          {2, 6, 3},
-                                                          {3, 6, 7},
-                                                          {0, 4, 2},
-                                                          {2, 4, 6},
-                                                          {1, 3, 5},
-                                                          {3, 7, 5}}};
-  for (const auto& face : kFaces) {
-    text +=
-        fmt::format("     <triangle v1=\"{}\" v2=\"{}\" v3=\"{}\"/>\n", face[0], face[1], face[2]);
+  for (const Triangle& t : box.triangles) {
+    text += fmt::format("     <triangle v1=\"{}\" v2=\"{}\" v3=\"{}\"/>\n", t[0], t[1], t[2]);
   }
   return text + "    </triangles>\n   </mesh>\n  </object>\n";
 }

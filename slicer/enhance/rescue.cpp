@@ -8,11 +8,11 @@
 #include <utility>
 #include <vector>
 
+#include "slicer/any_slice.h"
 #include "slicer/enhance/breaks.h"
 #include "slicer/enhance/mask_patch.h"
 #include "slicer/enhance/spurious.h"
 #include "slicer/regions.h"
-#include "slicer/rows.h"
 
 namespace binderjet {
 namespace {
@@ -36,16 +36,6 @@ std::int64_t weight_of(const std::vector<RunLayer>& gone) {
   }
   regions += finder.finish().size();
   return kFeatureWeight * static_cast<std::int64_t>(regions) + voxels;
-}
-
-RunLayer united(const RunLayer& a, const RunLayer& b) {
-  RunLayer sum(a.width());
-  std::vector<int> row;
-  for (int y = 0; y < a.height(); ++y) {
-    rows::unite(a.row(y), b.row(y), row);
-    sum.append_row(row);
-  }
-  return sum;
 }
 
 class Rescue {
@@ -112,7 +102,7 @@ LayerFaults Rescue::faults_of(int offset, const RunLayer& mask,
                   spurious_print(target, *seen[1]->printed), find_breaks(seen)};
   for (const PrinterModel& model : window_.subspan(1)) {
     const RunLayer more = spurious_print(target, print_with(layers_, offset, model, mask));
-    if (more.count() > 0) out.barren = united(out.barren, more);
+    if (more.count() > 0) out.barren = any_slice({{out.barren, more}});
   }
   return out;
 }
