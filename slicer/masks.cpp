@@ -1,11 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "slicer/masks.h"
 
-#include <functional>
 #include <utility>
 #include <vector>
 
-#include "slicer/enhance/inverse.h"
 #include "slicer/enhance/paper_rule.h"
 #include "slicer/slicing_operator.h"
 
@@ -36,37 +34,6 @@ std::unique_ptr<Stream<PassLayer>> with_print(std::unique_ptr<Stream<SlicedLayer
         const SlicedLayer& here = *window[window.size() / 2];
         return PassLayer{here.target, here.volume, model->print(masks, layer)};
       });
-}
-
-// A step of the inverse solver; every so many layers have their turn.
-struct InverseTurn {
-  int every;
-  int which;
-  std::function<InverseLayer(const InverseSolver&, LayerWindow)> work;
-};
-
-std::vector<InverseTurn> inverse_turns(const InverseSolver& solver) {
-  std::vector<InverseTurn> turns;
-  const auto add_round = [&](int every, const auto& work) {
-    for (int which = 0; which < every; ++which) turns.push_back({every, which, work});
-  };
-  const auto add_rescue = [&](int every, RescueAim aim) {
-    add_round(every, [aim](const InverseSolver& by, LayerWindow layers) {
-      return by.rescue(layers, aim);
-    });
-  };
-  const auto improve = [](bool anew) {
-    return [anew](const InverseSolver& by, LayerWindow layers) { return by.improve(layers, anew); };
-  };
-  const int stride = solver.stride();
-  add_round(stride, improve(true));
-  if (stride > 1 || solver.follows_density()) add_round(stride, improve(false));
-  add_rescue(stride, RescueAim::features);
-  // What spans two layers takes one round for each.
-  add_rescue(stride, RescueAim::pieces);
-  add_rescue(stride, RescueAim::pieces);
-  add_rescue(solver.leftovers_stride(), RescueAim::leftovers);
-  return turns;
 }
 
 // How many layers above and below a layer `passes` passes look at.
@@ -117,39 +84,6 @@ std::unique_ptr<Stream<MaskLayer>> paper_masks(TargetFrom target_from, const Gri
         const VoxelLayer last = paper_rule(window[0].get(), *window[1], window[2].get());
         return MaskLayer{slicing_operator(last, grid), window[1]->target};
       });
-}
-
-std::unique_ptr<Stream<MaskLayer>> inverse_masks(TargetFrom target_from, LayerRange layers,
-                                                 int job_layers,
-                                                 std::shared_ptr<const InverseSolver> solver) {
-  const std::vector<InverseTurn> turns = inverse_turns(*solver);
-  const LayerRange settled = grown(layers, solver->print_reach(), job_layers);
-  const auto range_with = [&](std::size_t turns_left) {
-    return grown(settled, static_cast<int>(turns_left) * solver->reach(), job_layers);
-  };
-  using First = Step<VoxelLayer, InverseLayer>;
-  std::unique_ptr<Stream<InverseLayer>> improved = std::make_unique<First>(
-      target_from(range_with(turns.size())), range_with(turns.size()), 0, job_layers,
-      [solver](int layer, First::Window window) { return solver->plain(layer, window[0]); });
-
-  using Improve = Step<InverseLayer, InverseLayer>;
-  for (std::size_t i = 0; i < turns.size(); ++i) {
-    improved = std::make_unique<Improve>(
-        std::move(improved), range_with(turns.size() - i - 1), solver->reach(), job_layers,
-        [solver, turn = turns[i]](int layer, Improve::Window window) {
-          return layer % turn.every == turn.which ? turn.work(*solver, window)
-                                                  : *window[window.size() / 2];
-        });
-  }
-  improved = std::make_unique<Improve>(
-      std::move(improved), layers, solver->print_reach(), job_layers,
-      [solver](int, Improve::Window window) { return solver->settle(window); });
-
-  using Last = Step<InverseLayer, MaskLayer>;
-  return std::make_unique<Last>(std::move(improved), layers, 0, job_layers,
-                                [](int, Last::Window window) {
-                                  return MaskLayer{*window[0]->mask, window[0]->target};
-                                });
 }
 
 std::unique_ptr<Stream<MaskLayer>> plain_masks(std::shared_ptr<const Mesh> mesh, const Grid& grid,

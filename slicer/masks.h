@@ -42,9 +42,10 @@ std::unique_ptr<Stream<MaskLayer>> paper_masks(TargetFrom target_from, const Gri
 
 // The masks that print nearest to the target (slicer/enhance/inverse.h). A model whose binder
 // crosses layers takes turns: layers that share no print are improved together, twice over; so does
-// one whose gains follow the masks' density. Then layers in which features vanish are searched
-// again, three times, with their neighbours' prints known; at last what still prints where no part
-// is goes.
+// one whose gains follow the masks' density. Then layers in which features vanish or pieces come
+// off are searched again, three times, with their neighbours' prints known. What still prints where
+// no part is goes, and what no single layer could set right is mended over many at once
+// (slicer/enhance/mend.h).
 std::unique_ptr<Stream<MaskLayer>> inverse_masks(TargetFrom target_from, LayerRange layers,
                                                  int job_layers,
                                                  std::shared_ptr<const InverseSolver> solver);

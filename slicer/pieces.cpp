@@ -106,23 +106,26 @@ std::int64_t PieceCounter::separated() {
                        [](const auto& part) { return part.second.size() > 1; });
 }
 
-std::vector<Region> PieceCounter::loose_pieces() {
+std::vector<Region> PieceCounter::loose_pieces(const GoesOn& goes_on) {
   const std::vector<Region> regions = pieces_.regions();
-  const auto voxels = [&](int piece) { return regions[static_cast<std::size_t>(piece)].voxels; };
+  const auto region = [&](int piece) {
+    return in_slices(regions[static_cast<std::size_t>(piece)], slices_);
+  };
   std::set<int> loose;  // a piece may come off two parts at once
-  for (const auto& [part, pieces] : pieces_by_part()) {
-    if (pieces.empty()) continue;
-    const int kept = *std::max_element(pieces.begin(), pieces.end(),
-                                       [&](int a, int b) { return voxels(a) < voxels(b); });
-    for (const int piece : pieces) {
-      if (piece != kept) loose.insert(piece);
+  auto by_part = pieces_by_part();
+  for (auto& [part, pieces] : by_part) {
+    if (pieces.size() < 2) continue;
+    const auto kept = [&](int piece) { return goes_on && goes_on(region(piece)); };
+    if (std::erase_if(pieces, kept) == 0) {
+      pieces.erase(std::max_element(pieces.begin(), pieces.end(), [&](int a, int b) {
+        return region(a).voxels < region(b).voxels;
+      }));
     }
+    loose.insert(pieces.begin(), pieces.end());
   }
   std::vector<Region> out;
   out.reserve(loose.size());
-  for (const int piece : loose) {
-    out.push_back(in_slices(regions[static_cast<std::size_t>(piece)], slices_));
-  }
+  for (const int piece : loose) out.push_back(region(piece));
   return out;
 }
 

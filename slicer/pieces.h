@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cstdint>
+#include <functional>
 #include <map>
 #include <set>
 #include <vector>
@@ -65,8 +66,11 @@ class PieceCounter {
   // Connected regions of the target that more than one connected region of the print has voxels
   // of.
   std::int64_t separated();
-  // What comes off those: the pieces of each but its largest.
-  std::vector<Region> loose_pieces();
+  // What comes off those: the pieces of each but its largest. Who has added a part of a job only
+  // says which regions may go on beyond it: they are none, and what comes off them is loose
+  // whatever its size.
+  using GoesOn = std::function<bool(const Region&)>;
+  std::vector<Region> loose_pieces(const GoesOn& goes_on = {});
   // Where connected regions of the target hang together in the print: the bridges between them, or
   // the whole piece where no straight way joins them.
   std::vector<Region> joints();

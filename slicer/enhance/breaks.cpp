@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "slicer/any_slice.h"
+#include "slicer/enhance/layer_sets.h"
 #include "slicer/enhance/plane.h"
 #include "slicer/pieces.h"
 #include "slicer/rows.h"
@@ -72,28 +73,6 @@ RunLayer runs_of(const RunLayer& printed, const std::vector<int>& numbers, Regio
   return out;
 }
 
-// The target's voxels that are not printed, within any of the boxes.
-RunLayer unprinted(const ComparedLayer& layer, const std::vector<Rect>& boxes) {
-  const RunLayer wanted = any_slice(*layer.target);
-  RunLayer out(wanted.width());
-  std::vector<int> open;
-  std::vector<int> near;
-  std::vector<int> sum;
-  for (int y = 0; y < wanted.height(); ++y) {
-    near.clear();
-    for (const Rect& box : boxes) {
-      if (y < box.y0 || y >= box.y1) continue;
-      const int ends[] = {box.x0, box.x1};
-      rows::unite(near, ends, sum);
-      near.swap(sum);
-    }
-    rows::subtract(wanted.row(y), layer.printed->row(y), open);
-    rows::intersect(open, near, sum);
-    out.append_row(sum);
-  }
-  return out;
-}
-
 }  // namespace
 
 Breaks find_breaks(std::span<const ComparedLayer* const> window) {
@@ -122,7 +101,8 @@ Breaks find_breaks(std::span<const ComparedLayer* const> window) {
     }
   }
   out.loose = out.count == 0 ? powder : runs_of(*middle.printed, of_middle, pieces, loose);
-  out.gap = out.count == 0 ? powder : unprinted(middle, near);
+  out.gap =
+      out.count == 0 ? powder : within(without(any_slice(*middle.target), *middle.printed), near);
   return out;
 }
 

@@ -5,10 +5,10 @@
 #include <numeric>
 #include <utility>
 
+#include "slicer/enhance/layer_sets.h"
 #include "slicer/enhance/mask_patch.h"
 #include "slicer/enhance/spurious.h"
 #include "slicer/enhance/tile_surroundings.h"
-#include "slicer/rows.h"
 #include "slicer/slicing_operator.h"
 
 namespace binderjet {
@@ -28,16 +28,6 @@ double level_share(const ModelForm& form) {
   double gains = 0;
   for (const DoseTerm& term : form.terms) gains += term.gain;
   return form.level / gains;
-}
-
-RunLayer common(const RunLayer& a, const RunLayer& b) {
-  RunLayer both(a.width());
-  std::vector<int> row;
-  for (int y = 0; y < a.height(); ++y) {
-    rows::intersect(a.row(y), b.row(y), row);
-    both.append_row(row);
-  }
-  return both;
 }
 
 }  // namespace

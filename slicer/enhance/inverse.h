@@ -39,18 +39,20 @@ class InverseSolver {
   InverseSolver(std::vector<PrinterModel> window, const Grid& grid, const MaskRules& rules);
 
   // How many layers on each side of a layer improve() and rescue() look at.
-  int reach() const { return 2 * search_.printer.window_reach() + 2; }
+  int reach() const { return 2 * search_.printer.window_reach() + 1; }
   // The same for settle().
   int print_reach() const { return search_.printer.window_reach(); }
   // Layers so many apart (or a multiple) print into no common layer, so all of them may be improved
-  // at once and none spoils what another one saw; leftovers are seen from one layer further.
+  // at once and none spoils what another one saw.
   int stride() const { return stride_; }
-  int leftovers_stride() const { return stride_ + 2; }
   // Whether a layer's print also depends on other layers' masks through their density, which a
   // search takes as it is: then layers are to be improved again.
   bool follows_density() const {
     return search_.printer.form().placed.density_radius_mm.has_value();
   }
+
+  // What it goes by; the mending of many layers (slicer/enhance/mend.h) wants it too.
+  const SearchModel& by() const { return search_; }
 
   // Layer `number` of the job with its plain mask, or what the rules leave of it.
   InverseLayer plain(int number, Shared<VoxelLayer> target) const;

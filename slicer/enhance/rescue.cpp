@@ -10,7 +10,6 @@
 
 #include "slicer/any_slice.h"
 #include "slicer/enhance/breaks.h"
-#include "slicer/enhance/mask_patch.h"
 #include "slicer/enhance/spurious.h"
 #include "slicer/regions.h"
 
@@ -21,8 +20,6 @@ namespace {
 // spoils a part; a feature that is gone spoils itself.
 constexpr std::int64_t kBreakWeight = 1000;
 constexpr std::int64_t kFeatureWeight = 500;
-// The last resort changes pixels up to this far around a piece.
-constexpr int kMostPatchPx = 7;
 
 using FaultsByOffset = std::map<int, Shared<LayerFaults>>;
 
@@ -45,11 +42,9 @@ class Rescue {
       : by_(by), window_(window), layers_(layers), aim_(aim), out_(*layer_at(layers, 0)) {}
 
   InverseLayer run() {
-    if (weight(faults_near(0, *out_.mask)) == 0) return out_;
     const FaultsByOffset before = faults(*out_.mask);
     least_ = weight(before);
-    search(before);
-    if (least_ > 0 && aim_ == RescueAim::leftovers) patch(before);
+    if (least_ > 0) search(before);
     return out_;
   }
 
@@ -57,15 +52,9 @@ class Rescue {
   std::int64_t weight(const FaultsByOffset& all) const;
   LayerFaults faults_of(int offset, const RunLayer& mask,
                         std::map<int, ComparedLayer>& compared) const;
-  FaultsByOffset faults_near(int beside, const RunLayer& mask) const;
-  // Of all layers that this round looks at.
-  FaultsByOffset faults(const RunLayer& mask) const {
-    return faults_near(aim_ == RescueAim::leftovers ? 1 : 0, mask);
-  }
+  FaultsByOffset faults(const RunLayer& mask) const;
   bool take(RunLayer mask);
   void search(const FaultsByOffset& before);
-  void patch(const FaultsByOffset& before);
-  bool patch(const std::vector<const RunLayer*>& places, const RunLayer& with);
 
   const SearchModel& by_;
   std::span<const PrinterModel> window_;
@@ -107,12 +96,12 @@ LayerFaults Rescue::faults_of(int offset, const RunLayer& mask,
   return out;
 }
 
-// Of the layers whose print the mask changes and so many on each side.
-FaultsByOffset Rescue::faults_near(int beside, const RunLayer& mask) const {
+// Of the layers whose print the mask changes.
+FaultsByOffset Rescue::faults(const RunLayer& mask) const {
   FaultsByOffset out;
   std::map<int, ComparedLayer> compared;
   const std::set<int>& printed = by_.offsets.printed;
-  for (int offset = *printed.begin() - beside; offset <= *printed.rbegin() + beside; ++offset) {
+  for (int offset = *printed.begin(); offset <= *printed.rbegin(); ++offset) {
     if (layer_at(layers_, offset) == nullptr) continue;
     out.emplace(offset, std::make_shared<const LayerFaults>(faults_of(offset, mask, compared)));
   }
@@ -154,31 +143,6 @@ void Rescue::search(const FaultsByOffset& before) {
     search.run_near(places, start);
     if (take(search.mask())) return;
   }
-}
-
-// Where no search helped: the plain mask's pixels around what breaks, or none.
-void Rescue::patch(const FaultsByOffset& before) {
-  std::vector<const RunLayer*> loose;
-  std::vector<const RunLayer*> broken;
-  for (const auto& [offset, faults] : before) {
-    if (faults->breaks.count == 0) continue;
-    loose.push_back(&faults->breaks.loose);
-    broken.insert(broken.end(), {&faults->breaks.loose, &faults->breaks.gap});
-  }
-  if (broken.empty() || patch(broken, *out_.plain)) return;
-  patch(loose, RunLayer::powder(out_.plain->width(), out_.plain->height()));
-}
-
-bool Rescue::patch(const std::vector<const RunLayer*>& places, const RunLayer& with) {
-  for (int around_px = 0; around_px <= kMostPatchPx; around_px = 2 * around_px + 1) {
-    std::vector<Rect> near;
-    for (const RunLayer* place : places) {
-      const std::vector<Rect> more = pixels_around(*place, by_.grid, around_px);
-      near.insert(near.end(), more.begin(), more.end());
-    }
-    if (take(patched(*out_.mask, with, near, by_.rules))) return true;
-  }
-  return false;
 }
 
 }  // namespace

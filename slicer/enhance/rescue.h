@@ -3,8 +3,7 @@
 //
 // Where it does, its mask is searched again with what is missing stressed, from several starts,
 // and the mask with the least faults stays. A feature that spans layers is rescued layer after
-// layer, so what a round counts differs: printed at all comes first, then in one piece, then both,
-// seen from the layers beside it as well.
+// layer, so what a round counts differs: printed at all comes first, then in one piece.
 #pragma once
 
 #include <map>
@@ -16,9 +15,8 @@
 namespace binderjet {
 
 enum class RescueAim {
-  features,   // lost, fused and what is printed where no part is
-  pieces,     // and pieces that the target holds together
-  leftovers,  // the same, also those of the layers beside it, and at any price
+  features,  // lost, fused and what is printed where no part is
+  pieces,    // and pieces that the target holds together
 };
 
 // The middle layer with fewer faults, if it has any and no layer gets worse than with plain masks.

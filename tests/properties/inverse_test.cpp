@@ -261,6 +261,29 @@ TEST(Inverse, PrintsWhatIsNarrowerThanTheSpreadAndInOnePiece) {
   }
 }
 
+// Leaning spires over several of the blocks in which layers are mended.
+TEST(Inverse, GivesTheSameInPiecesOfATallJob) {
+  Case c;
+  c.grid = {{0.1, 0.1, 0.1}, {2, 2, 2}};
+  c.layers = 60;
+  c.target = Volume(60, 40, 2 * c.layers);
+  c.target.fill([](int x, int y, int z) {
+    const int at = 6 + (z % 50) / 2;
+    return y >= 10 && y < 13 && x >= at && x < at + 3 + (z / 7) % 2;
+  });
+  c.window = {PrinterModel({{"spread", {{"shape", "box"}}, {{"width_mm", {0.7, 0.5}}}},
+                            {"threshold", {}, {{"level", {0.4}}}}},
+                           c.grid)};
+  c.rules = {4, 4};
+  const Volume all = streamed(c, {0, c.layers}, kBlockLayers);
+  for (const LayerRange piece : {LayerRange{0, 9}, LayerRange{21, 40}, LayerRange{59, 60}}) {
+    const Volume part = streamed(c, piece, 3);
+    for (int k = piece.first; k < piece.last; ++k) {
+      ASSERT_EQ(whole::slice(part, k - piece.first), whole::slice(all, k)) << "layer " << k;
+    }
+  }
+}
+
 TEST(Inverse, AnswersBinderThatSoaksIntoTheLayersBelow) {
   // A calibrated profile's form: a share of each layer's binder reaches the two layers below.
   Case c = relief(0.35);

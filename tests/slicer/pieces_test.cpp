@@ -84,6 +84,21 @@ TEST(Pieces, TheLesserPieceOfABrokenBarIsLoose) {
   EXPECT_EQ(loose[0].voxels, 6 * 3 * 2);
 }
 
+TEST(Pieces, WhatMayGoOnElsewhereIsNotLooseAndWhatComesOffItIs) {
+  Volume bar(20, 1, 1);
+  bar.fill([](int, int, int) { return true; });
+  Volume broken(20, 1, 1);
+  broken.fill([](int x, int, int) { return x < 2 || (x >= 3 && x < 17) || x >= 18; });
+  PieceCounter counter = counted(bar, broken, 1);
+  EXPECT_EQ(counter.loose_pieces().size(), 2);
+  const auto at_the_end = [](const Region& region) {
+    return region.low[0] == 0 || region.high[0] == 20;
+  };
+  const std::vector<Region> loose = counter.loose_pieces(at_the_end);
+  ASSERT_EQ(loose.size(), 1);
+  EXPECT_EQ(loose[0].low[0], 3);
+}
+
 TEST(Pieces, ABridgeBetweenTwoPartsIsTheirJointAlongEachAxis) {
   for (std::size_t axis = 0; axis < 3; ++axis) {
     SCOPED_TRACE(axis);

@@ -6,6 +6,10 @@
 
 #include <array>
 
+#include "slicer/enhance/layer_sets.h"
+#include "slicer/mask_regions.h"
+#include "tests/support/random.h"
+
 namespace binderjet {
 namespace {
 
@@ -41,6 +45,29 @@ TEST(MaskPatch, ObeysTheRules) {
   const std::array places{Rect{0, 0, 3, 3}};
   // The island of one pixel goes.
   EXPECT_EQ(patched(mask, with, places, {4, 4}), rows_of({{3, 8}, {3, 8}, {3, 8}}));
+}
+
+TEST(MaskPatch, ObeysTheRulesEverywhereAndChangesNothingFarOff) {
+  whole::Random random;
+  for (int round = 0; round < 300; ++round) {
+    SCOPED_TRACE(round);
+    const int width = random.number(4, 40);
+    const int height = random.number(4, 40);
+    const MaskRules rules{random.number(1, 5), random.number(1, 5)};
+    const RunLayer nothing = RunLayer::powder(width, height);
+    const std::array everywhere{Rect{0, 0, width, height}};
+    const auto any = [&] { return whole::slice(random.volume(width, height, 1, 4), 0); };
+    const RunLayer mask = patched(nothing, any(), everywhere, rules);
+    const int x = random.number(-3, width);
+    const int y = random.number(-3, height);
+    const std::array places{Rect{x, y, x + random.number(0, 9), y + random.number(0, 9)}};
+    const RunLayer out = patched(mask, any(), places, rules);
+    const MaskRegions found = mask_regions(out);
+    ASSERT_GE(found.least_hole_px, rules.min_hole_px);
+    ASSERT_GE(found.least_island_px, rules.min_island_px);
+    const std::array near{places[0].grown(2 * rules.most(), 2 * rules.most())};
+    ASSERT_EQ(without(out, within(out, near)), without(mask, within(mask, near)));
+  }
 }
 
 }  // namespace
