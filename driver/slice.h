@@ -21,7 +21,7 @@ struct SliceOptions {
   std::vector<std::string> parts;
   std::string profile;
   std::string out;
-  std::string enhance = "none";
+  std::string enhance = "inverse";
   int passes = 2;
   bool robust = true;
   std::optional<double> layer_mm;

@@ -10,7 +10,7 @@ mkdir -p "$out"
 
 set -x
 build/binderjet coupon --kind golfball -o "$out/ball.stl"
-build/binderjet slice "$out/ball.stl" --scale 0.4 -p z450 --enhance paper -o "$out/ball.bjob"
+build/binderjet slice "$out/ball.stl" --scale 0.4 -p z450 --enhance inverse -o "$out/ball.bjob"
 build/binderjet export "$out/ball.bjob" -o "$out/masks"
 build/binderjet simulate "$out/ball.bjob" -p z450 -o "$out/printed"
 build/binderjet score "$out/ball.bjob" --target "$out/ball.stl"

@@ -156,7 +156,7 @@ TEST_F(UsbProgram, GoesOnBehindALossOfPower) {
 
 TEST_F(UsbProgram, StreamsAPartAsItIsSlicedAndResumesItWithoutAJobFile) {
   const std::string part = write_part(5);
-  const std::vector<std::string> how = {"-p", "z450", "--enhance", "inverse"};
+  const std::vector<std::string> how = {"-p", "z450"};  // inverse masks
   std::vector<std::string> slice = {"slice", part, "-o", folder_ / "whole.bjob"};
   slice.insert(slice.end(), how.begin(), how.end());
   ASSERT_EQ(run(slice).status, 0);
