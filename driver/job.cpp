@@ -12,6 +12,7 @@
 #include "slicer/effects/process_window.h"
 #include "slicer/enhance/inverse.h"
 #include "slicer/error.h"
+#include "slicer/json_int.h"
 #include "slicer/mesh/read_mesh.h"
 #include "slicer/mesh/repair.h"
 
@@ -31,14 +32,14 @@ Json to_json(const Source& source) {
   return json;
 }
 
-Source source_of(const Json& json) {
+Source source_of(const Json& json, const std::string& where) {
   Source source;
   json.at("file").get_to(source.file);
   json.at("hash").get_to(source.hash);
   json.at("unit_mm").get_to(source.placement.unit_mm);
   json.at("scale").get_to(source.placement.scale);
   json.at("rotate_deg").get_to(source.placement.rotate_deg);
-  json.at("corner_px").get_to(source.corner_px);
+  get_int(json.at("corner_px"), source.corner_px, where);
   source.placement.wall_mm = json.value("wall_mm", 0.0);
   return source;
 }
@@ -116,17 +117,19 @@ JobHeader parse_job_header(const std::string& text, const std::string& where) {
     JobHeader header;
     header.profile =
         parse_profile(json.at("profile").at("text").get<std::string>(), where + ": profile");
-    json.at("size_px").get_to(header.box.size_px);
-    json.at("margin_px").get_to(header.box.margin_px);
-    json.at("bed_px").get_to(header.box.bed_px);
+    get_int(json.at("size_px"), header.box.size_px, where);
+    get_int(json.at("margin_px"), header.box.margin_px, where);
+    get_int(json.at("bed_px"), header.box.bed_px, where);
     json.at("pitch_mm").get_to(header.grid.pitch_mm);
-    json.at("detail_vx").get_to(header.grid.detail_vx);
+    get_int(json.at("detail_vx"), header.grid.detail_vx, where);
     json.at("enhance").get_to(header.enhance);
-    json.at("passes").get_to(header.passes);
+    get_int(json.at("passes"), header.passes, where);
     header.robust = json.value("robust", true);
     header.color = json.contains("color");
     if (header.color) json.at("color").at("enhanced").get_to(header.color_enhanced);
-    for (const Json& source : json.at("sources")) header.sources.push_back(source_of(source));
+    for (const Json& source : json.at("sources")) {
+      header.sources.push_back(source_of(source, where));
+    }
     for (const int size : header.box.size_px) {
       if (size < 1 || size > (1 << 24)) throw Error(ErrorKind::kBadInput, where, "has a bad size");
     }

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // glTF and whatever else assimp knows: all meshes of the scene where its nodes put them.
+#include <assimp/BaseImporter.h>
 #include <assimp/DefaultIOSystem.h>
 #include <assimp/material.h>
 #include <assimp/postprocess.h>
@@ -9,8 +10,10 @@
 #include <algorithm>
 #include <array>
 #include <assimp/Importer.hpp>
+#include <cctype>
 #include <cmath>
 #include <filesystem>
+#include <memory>
 #include <optional>
 #include <span>
 #include <string>
@@ -229,12 +232,27 @@ class SceneReader {
   std::int64_t left_out_ = 0;
 };
 
+// Keeps of assimp's readers those for this extension, and none for a format that we read ourselves:
+// assimp would ask the others too whether they know what a broken file is, and some crash on it.
+void keep_readers_of(const std::string& extension, Assimp::Importer& importer) {
+  const std::string ours = " obj stl ply off 3mf ";
+  const std::string wanted = " " + extension + " ";
+  for (std::size_t i = importer.GetImporterCount(); i-- > 0;) {
+    const std::string known = fmt::format(" {} ", importer.GetImporterInfo(i)->mFileExtensions);
+    if (known.find(wanted) != known.npos && ours.find(wanted) == ours.npos) continue;
+    const std::unique_ptr<Assimp::BaseImporter> reader(importer.GetImporter(i));
+    importer.UnregisterLoader(reader.get());
+  }
+}
+
 }  // namespace
 
 MeshFile read_with_assimp(const std::string& path, const std::string& name) {
   Assimp::Importer importer;
-  const std::string dot = path.substr(std::min(path.size(), path.find_last_of("./")));
-  if (name.find('.') == name.npos || !importer.IsExtensionSupported(dot)) {
+  std::string dot = path.substr(std::min(path.size(), path.find_last_of("./")));
+  for (char& c : dot) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+  if (dot.starts_with('.')) keep_readers_of(dot.substr(1), importer);
+  if (!dot.starts_with('.') || importer.GetImporterCount() == 0) {
     throw Error(ErrorKind::kBadInput, name,
                 "is of no known format; save the model as STL, PLY, OBJ, OFF, 3MF or glTF");
   }

@@ -5,12 +5,15 @@
 #include <Inventor/SoInput.h>
 #include <Inventor/SoPrimitiveVertex.h>
 #include <Inventor/VRMLnodes/SoVRMLAppearance.h>
+#include <Inventor/VRMLnodes/SoVRMLCoordinate.h>
 #include <Inventor/VRMLnodes/SoVRMLImageTexture.h>
+#include <Inventor/VRMLnodes/SoVRMLIndexedShape.h>
 #include <Inventor/VRMLnodes/SoVRMLInline.h>
 #include <Inventor/VRMLnodes/SoVRMLShape.h>
 #include <Inventor/actions/SoCallbackAction.h>
 #include <Inventor/errors/SoDebugError.h>
 #include <Inventor/errors/SoReadError.h>
+#include <Inventor/nodes/SoIndexedShape.h>
 #include <Inventor/nodes/SoSeparator.h>
 #include <Inventor/nodes/SoShape.h>
 #include <Inventor/nodes/SoTexture2.h>
@@ -73,6 +76,9 @@ class SceneReader {
  public:
   explicit SceneReader(const std::string& path) : path_(path) {}
 
+  // True once a face has named a point that is not there.
+  bool lacks_points() const { return lacks_points_; }
+
   MeshFile read(SoNode& root) {
     SoCallbackAction action;
     action.addPreCallback(SoVRMLShape::getClassTypeId(), enter_shape, this);
@@ -111,9 +117,35 @@ class SceneReader {
     return SoCallbackAction::CONTINUE;
   }
 
+  // Coin reads the points that a face names without asking whether they are there.
+  static bool names_all(const SoMFInt32& index, int points) {
+    for (int i = 0; i < index.getNum(); ++i) {
+      if (index[i] >= points) return false;
+    }
+    return true;
+  }
+  static bool has_its_points(SoCallbackAction& action, const SoNode& node) {
+    if (node.isOfType(SoIndexedShape::getClassTypeId())) {
+      return names_all(static_cast<const SoIndexedShape&>(node).coordIndex,
+                       action.getNumCoordinates());
+    }
+    if (node.isOfType(SoVRMLIndexedShape::getClassTypeId())) {
+      const auto& shape = static_cast<const SoVRMLIndexedShape&>(node);
+      const SoNode* points = shape.coord.getValue();
+      const bool there = points != nullptr && points->isOfType(SoVRMLCoordinate::getClassTypeId());
+      return names_all(shape.coordIndex,
+                       there ? static_cast<const SoVRMLCoordinate*>(points)->point.getNum() : 0);
+    }
+    return true;
+  }
+
   static SoCallbackAction::Response enter_old_shape(void* data, SoCallbackAction* action,
-                                                    const SoNode*) {
+                                                    const SoNode* node) {
     SceneReader& reader = self(data);
+    if (!has_its_points(*action, *node)) {
+      reader.lacks_points_ = true;
+      return SoCallbackAction::ABORT;
+    }
     const SbMatrix& matrix = action->getModelMatrix();
     for (int row = 0; row < 4; ++row) {
       for (int column = 0; column < 4; ++column) {
@@ -225,6 +257,7 @@ class SceneReader {
   std::map<std::string, int> images_;  // by the first name; -1 is not there
   std::array<std::array<double, 4>, 4> matrix_{};
   bool mirrored_ = false;
+  bool lacks_points_ = false;
   int image_ = -1;  // of the shape being read
   bool missing_ = false;
   std::vector<std::pair<int, bool>> outer_;
@@ -292,8 +325,13 @@ MeshFile read_wrl(InputFile& file, const std::string& path) {
                             fault.empty() ? "no reason given" : fault));
   }
   root->ref();
-  MeshFile result = SceneReader(path).read(*root);
+  SceneReader reader(path);
+  MeshFile result = reader.read(*root);
   root->unref();
+  if (reader.lacks_points()) {
+    throw Error(ErrorKind::kBadInput, name,
+                "has a face that names a point that is not there; export the model again");
+  }
   if (!fault.empty()) result.warnings.push_back("was read with a fault: " + fault);
   return result;
 }

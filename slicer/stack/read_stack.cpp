@@ -8,6 +8,7 @@
 #include <nlohmann/json.hpp>
 
 #include "slicer/error.h"
+#include "slicer/json_int.h"
 #include "slicer/stack/slice_stack.h"
 
 namespace binderjet {
@@ -22,6 +23,9 @@ bool good_pattern(const std::string& files) {
   while (i < files.size() && files[i] >= '0' && files[i] <= '9' && i < percent + 4) ++i;
   return i < files.size() && files[i] == 'd' && files.find('%', i) == std::string::npos;
 }
+
+// With the largest size still an int.
+constexpr int kMostImages = 1 << 30;
 
 StackKind kind_of(const std::string& name, const std::string& where) {
   for (const StackKind kind : {StackKind::kMask, StackKind::kTarget, StackKind::kPrinted,
@@ -42,13 +46,13 @@ StackInfo parse(const std::string& path) {
     }
     StackInfo info;
     info.kind = kind_of(json.at("kind").get<std::string>(), path);
-    json.at("size").get_to(info.size);
+    get_int(json.at("size"), info.size, path);
     json.at("pitch_mm").get_to(info.pitch_mm);
     json.at("origin_mm").get_to(info.origin_mm);
     json.at("files").get_to(info.files);
-    json.at("first").get_to(info.first);
+    get_int(json.at("first"), info.first, path);
     info.threshold_stated = json.contains("threshold");
-    if (info.threshold_stated) json.at("threshold").get_to(info.threshold);
+    if (info.threshold_stated) get_int(json.at("threshold"), info.threshold, path);
     for (std::size_t axis = 0; axis < 3; ++axis) {
       constexpr int kMost = 1 << 20;
       if (info.size[axis] < 1 || info.size[axis] > kMost) {
@@ -57,6 +61,9 @@ StackInfo parse(const std::string& path) {
       if (!(info.pitch_mm[axis] > 0 && info.pitch_mm[axis] < 1000)) {
         throw Error(ErrorKind::kBadInput, path, "has a pitch outside 0 to 1000 mm");
       }
+    }
+    if (info.first < 0 || info.first > kMostImages) {
+      throw Error(ErrorKind::kBadInput, path, "numbers its images from outside 0 to 2^30");
     }
     if (!good_pattern(info.files)) {
       throw Error(ErrorKind::kBadInput, path,

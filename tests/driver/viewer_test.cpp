@@ -141,5 +141,19 @@ TEST(RunCodec, SpendsAByteOnARowThatStaysAsItIs) {
   EXPECT_EQ(first, std::string("\3\3\136\0", 4));  // two flips; 3; 94 on; the empty row
 }
 
+TEST(RunCodec, SpendsAsManyBytesOnANumberAsItNeeds) {
+  RunLayer layer(40000);
+  layer.append_row(std::vector<int>{127, 255, 16638, 33022});
+  std::string text;
+  encode_runs(layer, RunLayer::powder(40000, 1), text);
+  // 127; 128, 16383 and 16384 on: seven bits a byte, the lowest first.
+  EXPECT_EQ(text, std::string("\5\177\x80\1\xff\177\x80\x80\1", 9));
+  RunLayer moved(40000);
+  moved.append_row(std::vector<int>{126, 256, 16638 - 64, 33022 + 64});
+  text.clear();
+  encode_runs(moved, layer, text);
+  EXPECT_EQ(text, std::string("\0\1\2\177\x80\1", 6)) << "-1, 1, -64 and 64";
+}
+
 }  // namespace
 }  // namespace binderjet

@@ -107,7 +107,8 @@ void fuzz_obj(const std::uint8_t* data, std::size_t size) {
   constexpr std::string_view kMaterials = "\n#a.mtl\n";
   const std::string text = text_of(data, size);
   const std::size_t at = text.find(kMaterials);
-  if (at != std::string::npos) folder().write("a.mtl", text.substr(at + kMaterials.size()));
+  // Anew each time: what an earlier input left must not decide.
+  folder().write("a.mtl", at == std::string::npos ? "" : text.substr(at + kMaterials.size()));
   read_model("a.obj", text.substr(0, at));
 }
 

@@ -159,6 +159,13 @@ TEST(Texture, AtOneIsTheLastColumnAndRepeatsBeyond) {
   EXPECT_EQ(texture.at({2.75, 0.5}, three_tiles), (Rgb{0, 0, 255}));
 }
 
+TEST(Texture, HasItsOriginAtTheLowerLeft) {
+  const Texture texture{1, 2, {255, 0, 0, 0, 0, 255}, {}};
+  const std::array<Uv, 3> corners = {{{0, 0}, {1, 0}, {0, 1}}};
+  EXPECT_EQ(texture.at({0.5, 0.25}, corners), (Rgb{0, 0, 255})) << "the row that is stored last";
+  EXPECT_EQ(texture.at({0.5, 0.75}, corners), (Rgb{255, 0, 0}));
+}
+
 TEST(Texture, LargeImagesAreAveragedDownToTheirShareOfMemory) {
   const colored::Folder folder;
   write_checkerboard(folder.file("board.png"));

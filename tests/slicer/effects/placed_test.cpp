@@ -55,10 +55,46 @@ TEST(PlacedEffects, ShiftsEvenAndOddLayersApart) {
   EXPECT_EQ(printed(parity, 5), (std::vector<int>{13, 23}));
 }
 
+TEST(PlacedEffects, ShiftsWhatBleedsDownLikeTheLayerThatItComesFrom) {
+  const PrinterModel printer(
+      {kThreshold, {"z_bleed_down", {}, {{"share", {0.6}}}}, {"parity", {}, {{"by_mm", {0.2, 0}}}}},
+      kGrid);
+  const RunLayer mask = bar();
+  std::vector<const RunLayer*> window(2 * static_cast<std::size_t>(printer.window_reach()) + 1,
+                                      nullptr);
+  const RunLayer powder = RunLayer::powder(mask.width(), mask.height());
+  window[window.size() / 2] = &powder;
+  window[window.size() / 2 + 1] = &mask;
+  EXPECT_EQ(middle_row(printer.print(window, 4)), (std::vector<int>{13, 23})) << "from layer 5";
+  EXPECT_EQ(middle_row(printer.print(window, 5)), (std::vector<int>{17, 27})) << "from layer 6";
+}
+
 TEST(PlacedEffects, DriftsWithHeight) {
   // The middle of layer 9 is at 0.95 mm: 0.2 mm of shift there, up to rounding to 1/16 voxel.
   const EffectSpec drift{"registration_drift", {}, {{"per_mm", {0.2 / 0.95, 0}}}};
   EXPECT_EQ(printed(drift, 9), (std::vector<int>{17, 27}));
+}
+
+TEST(PlacedEffects, TellsTheBedsAxesApart) {
+  // Level 1/2 needs a dose of 1/2 / gain: 3/5 stand under the bar's edges, 2/5 beside them.
+  const JobPlace place{{0, 50}, {4, 2}};
+  const RunLayer along_y =
+      model({"grad_bed", {}, {{"per_mm", {0, 0.4}}, {"per_mm2", {0}}, {"center_mm", {2, 51}}}},
+            place)
+          .print(bar());
+  const auto row = [](const RunLayer& layer, int y) {
+    return std::vector<int>(layer.row(y).begin(), layer.row(y).end());
+  };
+  EXPECT_EQ(row(along_y, 2), (std::vector<int>{16, 24})) << "a gain of 0.7";
+  EXPECT_EQ(row(along_y, 10), (std::vector<int>{15, 25})) << "1.02";
+  EXPECT_EQ(row(along_y, 17), (std::vector<int>{14, 26})) << "1.3";
+  const RunLayer along_x =
+      model({"grad_bed", {}, {{"per_mm", {0.4, 0}}, {"per_mm2", {0}}, {"center_mm", {2, 51}}}},
+            place)
+          .print(bar());
+  EXPECT_EQ(row(along_x, 2), row(along_x, 17));
+  EXPECT_EQ(row(along_x, 2), (std::vector<int>{16, 25}))
+      << "0.82 at the left edge, 1.2 at the right";
 }
 
 TEST(PlacedEffects, WeakensTheDoseFromALayerOn) {

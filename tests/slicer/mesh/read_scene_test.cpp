@@ -140,5 +140,29 @@ TEST(ReadGltf, RefusesADamagedFile) {
               HasSubstr("a.glb: cannot be"));
 }
 
+TEST(ReadVrml, RefusesAFaceWhosePointIsNotThere) {
+  const std::string coordinates = "{ point [0 0 0, 1 0 0, 0 1 0] }";
+  const std::string faces = "{ coordIndex [0, 111111, 2, -1] }";
+  EXPECT_THAT(error_of([&] {
+                read("a.wrl", "#VRML V1.0 ascii\nSeparator { Coordinate3 " + coordinates +
+                                  " IndexedFaceSet " + faces + " }");
+              }),
+              HasSubstr("a point that is not there"));
+  EXPECT_THAT(error_of([&] {
+                read("a.wrl",
+                     "#VRML V2.0 utf8\nShape { geometry IndexedFaceSet { coord Coordinate " +
+                         coordinates + " coordIndex [0, 1, 3, -1] } }");
+              }),
+              HasSubstr("a point that is not there"));
+}
+
+// Assimp's OBJ reader crashes on files that ours refuses.
+TEST(ReadGltf, LeavesToAssimpNothingThatWeReadOurselves) {
+  EXPECT_THAT(error_of([] { read("a.obj", "glTF\nv 0 0 0\n"); }), HasSubstr("no known format"));
+  const std::string obj = "# an OBJ file\nv 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n";
+  EXPECT_THAT(error_of([&] { read("a.gltf", obj); }), HasSubstr("cannot be read"));
+  EXPECT_THAT(error_of([&] { read("a.dae", obj); }), HasSubstr("cannot be read"));
+}
+
 }  // namespace
 }  // namespace binderjet
