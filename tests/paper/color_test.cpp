@@ -39,9 +39,8 @@ class PaperColor : public testing::Test {
   PaperColor() { write_stl(coupon("golfball"), place_ / "ball.stl"); }
 
   View view(const std::vector<std::string>& options) const {
-    std::vector<std::string> words = {
-        "slice", place_ / "ball.stl",  "--scale", "0.3",       "-p",  "z450",
-        "-o",    place_ / "ball.bjob", "-q",      "--enhance", "none"};
+    std::vector<std::string> words = {"slice", place_ / "ball.stl",  "--scale", "0.3", "-p", "z450",
+                                      "-o",    place_ / "ball.bjob", "-q"};
     words.insert(words.end(), options.begin(), options.end());
     EXPECT_EQ(place_.run(words).status, 0);
     const MaskSource job = open_job(place_ / "ball.bjob", Console{});
