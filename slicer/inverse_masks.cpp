@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// The inverse solver's steps, layer by layer and then block by block, as one stream.
 #include <array>
 #include <functional>
 #include <memory>
