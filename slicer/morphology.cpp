@@ -27,6 +27,29 @@ void grown(rows::Row row, int by, int width, std::vector<int>& out) {
   }
 }
 
+// The middle layer, each of whose rows takes in every row that the ellipsoid reaches from it:
+// `take`(row so far, layer or null where there is none, y, half width of the ellipsoid there).
+template <class Take>
+RunLayer over_neighbours(std::span<const RunLayer* const> window, const Ellipsoid& by,
+                         const Take& take) {
+  const auto [rx, ry, rz] = by.reach();
+  const RunLayer& middle = *window[window.size() / 2];
+  RunLayer out(middle.width());
+  std::vector<int> runs;
+  for (int y = 0; y < middle.height(); ++y) {
+    runs.assign(middle.row(y).begin(), middle.row(y).end());
+    for (int dz = -rz; dz <= rz; ++dz) {
+      const RunLayer* layer = window[static_cast<std::size_t>(dz + rz)];
+      for (int dy = -ry; dy <= ry; ++dy) {
+        const int half = by.half_width(dy, dz);
+        if (half >= 0) take(runs, layer, y + dy, half);
+      }
+    }
+    out.append_row(runs);
+  }
+  return out;
+}
+
 }  // namespace
 
 Ellipsoid::Ellipsoid(double radius_mm, const Grid& grid)
@@ -56,54 +79,29 @@ int Ellipsoid::half_width(int dy, int dz) const {
 }
 
 RunLayer dilated(std::span<const RunLayer* const> window, const Ellipsoid& by) {
-  const auto [rx, ry, rz] = by.reach();
-  const RunLayer& middle = *window[window.size() / 2];
-  RunLayer out(middle.width());
-  std::vector<int> sum;
   std::vector<int> row;
   std::vector<int> next;
-  for (int y = 0; y < middle.height(); ++y) {
-    sum.clear();
-    for (int dz = -rz; dz <= rz; ++dz) {
-      const RunLayer* layer = window[static_cast<std::size_t>(dz + rz)];
-      if (layer == nullptr) continue;
-      for (int dy = -ry; dy <= ry; ++dy) {
-        const int half = by.half_width(dy, dz);
-        const rows::Row from = layer->row(y + dy);
-        if (half < 0 || from.empty()) continue;
-        grown(from, half, middle.width(), row);
-        rows::unite(sum, row, next);
-        std::swap(sum, next);
-      }
-    }
-    out.append_row(sum);
-  }
-  return out;
+  return over_neighbours(window, by,
+                         [&](std::vector<int>& runs, const RunLayer* layer, int y, int half) {
+                           if (layer == nullptr || layer->row(y).empty()) return;
+                           grown(layer->row(y), half, layer->width(), row);
+                           rows::unite(runs, row, next);
+                           std::swap(runs, next);
+                         });
 }
 
 RunLayer eroded(std::span<const RunLayer* const> window, const Ellipsoid& by, Beyond beyond) {
-  const auto [rx, ry, rz] = by.reach();
-  const RunLayer& middle = *window[window.size() / 2];
-  RunLayer out(middle.width());
-  std::vector<int> sum;
+  const int width = window[window.size() / 2]->width();
   std::vector<int> row;
   std::vector<int> next;
-  for (int y = 0; y < middle.height(); ++y) {
-    sum.assign(middle.row(y).begin(), middle.row(y).end());
-    for (int dz = -rz; dz <= rz && !sum.empty(); ++dz) {
-      const RunLayer* layer = window[static_cast<std::size_t>(dz + rz)];
-      if (layer == nullptr && beyond == Beyond::kSame) continue;
-      for (int dy = -ry; dy <= ry && !sum.empty(); ++dy) {
-        const int half = by.half_width(dy, dz);
-        if (half < 0) continue;
-        grown(layer == nullptr ? rows::Row{} : layer->row(y + dy), -half, middle.width(), row);
-        rows::intersect(sum, row, next);
-        std::swap(sum, next);
-      }
-    }
-    out.append_row(sum);
-  }
-  return out;
+  return over_neighbours(window, by,
+                         [&](std::vector<int>& runs, const RunLayer* layer, int y, int half) {
+                           if (runs.empty() || (layer == nullptr && beyond == Beyond::kSame))
+                             return;
+                           grown(layer == nullptr ? rows::Row{} : layer->row(y), -half, width, row);
+                           rows::intersect(runs, row, next);
+                           std::swap(runs, next);
+                         });
 }
 
 }  // namespace binderjet

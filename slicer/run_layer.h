@@ -71,6 +71,18 @@ class RunLayer {
     flips_.insert(flips_.end(), flips.begin(), flips.end());
     end_row();
   }
+  // Appends the row whose voxel x is 1 where `is(x)`; asks for each x once, in order.
+  template <class Is>
+  void append_row_where(const Is& is) {
+    bool solid = false;
+    for (int x = 0; x < width_; ++x) {
+      if (is(x) == solid) continue;
+      solid = !solid;
+      flips_.push_back(x);
+    }
+    if (solid) flips_.push_back(width_);
+    end_row();
+  }
   // Appends the rows [first, last) of another layer of this width.
   void append_rows(const RunLayer& from, int first, int last) {
     if (first >= last) return;

@@ -82,21 +82,16 @@ RunLayer Smoothing::operator()(std::span<const RunLayer* const> window) const {
       add_scaled(columns.data() + static_cast<std::ptrdiff_t>(y + d) * padded,
                  weights_[1][static_cast<std::size_t>(d + ry)], padded, along_y.data());
     }
-    if (any) {
-      std::fill(sums.begin(), sums.end(), 0);
-      for (int d = -rx; d <= rx; ++d) {
-        add_scaled(along_y.data() + rx + d, weights_[0][static_cast<std::size_t>(d + rx)], width,
-                   sums.data());
-      }
-      bool solid = false;
-      for (int x = 0; x < width; ++x) {
-        if ((sums[static_cast<std::size_t>(x)] >= kHalf) == solid) continue;
-        solid = !solid;
-        out.flip(x);
-      }
-      if (solid) out.flip(width);
+    if (!any) {
+      out.end_row();
+      continue;
     }
-    out.end_row();
+    std::fill(sums.begin(), sums.end(), 0);
+    for (int d = -rx; d <= rx; ++d) {
+      add_scaled(along_y.data() + rx + d, weights_[0][static_cast<std::size_t>(d + rx)], width,
+                 sums.data());
+    }
+    out.append_row_where([&](int x) { return sums[static_cast<std::size_t>(x)] >= kHalf; });
   }
   return out;
 }

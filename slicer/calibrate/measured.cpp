@@ -168,23 +168,15 @@ GreyPlane read_plane(const StackReader& scan, const Greys& greys, int image) {
 }
 
 RunLayer resampled(const GreyPlane& plane, const Pose& pose, const StackInfo& frame) {
-  const int width = frame.size[0];
-  RunLayer layer(width);
+  RunLayer layer(frame.size[0]);
   for (int y = 0; y < frame.size[1]; ++y) {
     const double y_mm = frame.origin_mm[1] + (y + 0.5) * frame.pitch_mm[1];
     const auto first = pose.in_scan(frame.origin_mm[0] + 0.5 * frame.pitch_mm[0], y_mm);
     const auto second = pose.in_scan(frame.origin_mm[0] + 1.5 * frame.pitch_mm[0], y_mm);
-    bool solid = false;
-    for (int x = 0; x < width; ++x) {
-      const double value = plane.sample(first[0] + x * (second[0] - first[0]),
-                                        first[1] + x * (second[1] - first[1]));
-      if ((value >= 0.5) != solid) {
-        solid = !solid;
-        layer.flip(x);
-      }
-    }
-    if (solid) layer.flip(width);
-    layer.end_row();
+    layer.append_row_where([&](int x) {
+      return plane.sample(first[0] + x * (second[0] - first[0]),
+                          first[1] + x * (second[1] - first[1])) >= 0.5;
+    });
   }
   return layer;
 }

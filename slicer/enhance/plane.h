@@ -80,14 +80,7 @@ RunLayer to_layer(const Plane<T>& plane, int width, int height) {
   RunLayer out(width);
   for (int y = 0; y < height; ++y) {
     const T* row = plane.at(0, y);
-    bool solid = false;
-    for (int x = 0; x < width; ++x) {
-      if ((row[x] != 0) == solid) continue;
-      solid = !solid;
-      out.flip(x);
-    }
-    if (solid) out.flip(width);
-    out.end_row();
+    out.append_row_where([row](int x) { return row[x] != 0; });
   }
   return out;
 }

@@ -117,15 +117,7 @@ RunLayer StackReader::read(int index) const {
   layer.reserve(height, 0);
   const std::uint8_t* sample = grey.data();
   for (int y = 0; y < height; ++y) {
-    bool solid = false;
-    for (int x = 0; x < width; ++x, ++sample) {
-      if ((*sample >= info_.threshold) != solid) {
-        solid = !solid;
-        layer.flip(x);
-      }
-    }
-    if (solid) layer.flip(width);
-    layer.end_row();
+    layer.append_row_where([&](int) { return *sample++ >= info_.threshold; });
   }
   return layer;
 }

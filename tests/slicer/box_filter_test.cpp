@@ -11,15 +11,7 @@ RunLayer layer_of(int width, int height, const std::vector<bool>& bits) {
   RunLayer layer(width);
   std::size_t next = 0;
   for (int y = 0; y < height; ++y) {
-    bool solid = false;
-    for (int x = 0; x < width; ++x) {
-      if (bits[next++] != solid) {
-        layer.flip(x);
-        solid = !solid;
-      }
-    }
-    if (solid) layer.flip(width);
-    layer.end_row();
+    layer.append_row_where([&](int) { return bits[next++]; });
   }
   return layer;
 }

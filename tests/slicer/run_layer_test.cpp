@@ -10,15 +10,7 @@ namespace {
 RunLayer layer_of(const std::vector<std::string>& rows) {
   RunLayer layer(static_cast<int>(rows.front().size()));
   for (const std::string& row : rows) {
-    bool solid = false;
-    for (std::size_t x = 0; x < row.size(); ++x) {
-      if ((row[x] == '#') != solid) {
-        layer.flip(static_cast<int>(x));
-        solid = !solid;
-      }
-    }
-    if (solid) layer.flip(layer.width());
-    layer.end_row();
+    layer.append_row_where([&](int x) { return row[static_cast<std::size_t>(x)] == '#'; });
   }
   return layer;
 }

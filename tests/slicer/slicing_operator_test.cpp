@@ -13,15 +13,7 @@ VoxelLayer voxels(int width, int height, int rz, const std::vector<bool>& bits) 
   for (int s = 0; s < rz; ++s) {
     RunLayer slice(width);
     for (int y = 0; y < height; ++y) {
-      bool solid = false;
-      for (int x = 0; x < width; ++x) {
-        if (bits[next++] != solid) {
-          slice.flip(x);
-          solid = !solid;
-        }
-      }
-      if (solid) slice.flip(width);
-      slice.end_row();
+      slice.append_row_where([&](int) { return bits[next++]; });
     }
     layer.slices.push_back(slice);
   }
