@@ -62,7 +62,7 @@ void write_file(const std::string& path, std::span<const std::byte> bytes) {
   std::FILE* file = std::fopen(path.c_str(), "wb");
   bool good = file != nullptr;
   if (good) {
-    good = std::fwrite(bytes.data(), 1, bytes.size(), file) == bytes.size();
+    good = bytes.empty() || std::fwrite(bytes.data(), 1, bytes.size(), file) == bytes.size();
     const int write_errno = errno;
     if (std::fclose(file) != 0) {
       good = false;
