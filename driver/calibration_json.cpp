@@ -59,16 +59,16 @@ Json calibration_json(const Calibration& calibration, const std::string& profile
     json["remaining"] = nullptr;
   }
   // The floor between replicates is known where there are two of them.
-  const auto floored =
-      std::find_if(calibration.scores.begin(), calibration.scores.end(),
-                   [](const BeforeAfter& score) { return score.floor.has_value(); });
-  const double floor = floored == calibration.scores.end() ? 0 : floored->floor->wrong;
+  const PrintError* floors = nullptr;
+  for (const BeforeAfter& score : calibration.scores) {
+    if (score.floor && floors == nullptr) floors = &*score.floor;
+  }
+  const double floor = floors == nullptr ? 0 : floors->wrong;
   const BeforeAfter& first = calibration.scores.front();
   json["data"] = first.name;
   json["before"] = to_json(first.before, floor);
   json["after"] = to_json(first.after, floor);
-  json["floor"] = nullptr;
-  if (floored != calibration.scores.end()) json["floor"] = to_json(*floored->floor, floor);
+  json["floor"] = floors == nullptr ? Json() : to_json(*floors, floor);
   json["scores"] = Json::array();
   for (const BeforeAfter& score : calibration.scores) {
     json["scores"].push_back({{"data", score.name},

@@ -61,11 +61,12 @@ std::unique_ptr<Stream<RunLayer>> prints_of(const SlicePlan& plan,
                                             std::shared_ptr<std::atomic<std::int64_t>> mask_px) {
   const LayerRange all{0, plan.header.layers()};
   using Take = Step<MaskLayer, RunLayer>;
-  auto masks = std::make_unique<Take>(mask_stream(plan.header, plan.mesh, all), all, 0,
-                                      plan.header.layers(), [mask_px](int, Take::Window window) {
-                                        *mask_px += window[0]->mask.count();
-                                        return window[0]->mask;
-                                      });
+  auto masks =
+      std::make_unique<Take>(mask_stream(plan.header, plan.mesh, all), all, 0, plan.header.layers(),
+                             [mask_px = std::move(mask_px)](int, Take::Window window) {
+                               *mask_px += window[0]->mask.count();
+                               return window[0]->mask;
+                             });
   using Print = Step<RunLayer, RunLayer>;
   const int reach = model->window_reach();
   return std::make_unique<Print>(std::move(masks), all, reach, plan.header.layers(),

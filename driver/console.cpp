@@ -6,6 +6,7 @@
 
 #include <CLI/CLI.hpp>
 #include <atomic>
+#include <cmath>
 #include <csignal>
 #include <utility>
 
@@ -20,7 +21,7 @@ static_assert(std::atomic<int>::is_always_lock_free, "a signal handler writes it
 void on_signal(int signal) { caught_signal = signal; }
 
 std::string minutes_and_seconds(double seconds) {
-  const int whole = static_cast<int>(seconds + 0.5);
+  const long whole = std::lround(seconds);
   return fmt::format("{}:{:02}", whole / 60, whole % 60);
 }
 

@@ -4,6 +4,8 @@
 #include <fmt/format.h>
 #include <sys/resource.h>
 
+#include <cmath>
+
 namespace binderjet {
 namespace {
 
@@ -14,7 +16,7 @@ double peak_rss_mb() {
 }
 
 std::string hours_and_minutes(double minutes) {
-  const int whole = static_cast<int>(minutes + 0.5);
+  const long whole = std::lround(minutes);
   return whole < 60 ? fmt::format("{} min", whole)
                     : fmt::format("{} h {:02} min", whole / 60, whole % 60);
 }

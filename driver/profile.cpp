@@ -42,7 +42,7 @@ class Table {
   // One number, or a list of `count` of them (0: one or more), each above `min` and at most `max`.
   std::vector<double> numbers(const std::string& key, std::size_t count, double min, double max) {
     const toml::node& node = need(key);
-    const std::vector<double> values = numbers_of(node, key);
+    std::vector<double> values = numbers_of(node, key);
     if (count == 0 ? values.empty() : values.size() != count) {
       fail(node.source(),
            count == 0 ? fmt::format("{} must not be empty", key)

@@ -36,10 +36,10 @@ ScoreSheet score_masks(const MaskSource& masks, const JobHeader& header,
                        const std::vector<PrinterModel>& models, const std::string& label,
                        const Console& console, const ScoreListener& listener = {});
 
-// The masks that `--enhance` of this word makes of the target in place of the job's own.
-MaskSource enhanced_masks(const MaskSource& job, const std::shared_ptr<const Mesh>& target,
-                          const Profile& profile, const std::string& enhance,
-                          const Console& console);
+// The masks that the profile and the enhancement of this header make of the target in place of the
+// job's own.
+MaskSource enhanced_masks(const MaskSource& job, JobHeader header,
+                          const std::shared_ptr<const Mesh>& target, const Console& console);
 
 nlohmann::ordered_json to_json(const ScoreSheet& sheet);
 

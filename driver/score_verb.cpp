@@ -93,8 +93,11 @@ void score(const ScoreOptions& options, const Console& console) {
   std::string text = text_of(own);
   if (options.compare) {
     text += "\n\nmasks     excess    mean   worst  edge mm  lost fused spurious separated";
+    JobHeader other = header;
+    other.profile = profile;
     for (const std::string enhance : {"none", "paper", "inverse"}) {
-      const MaskSource masks = enhanced_masks(job, target, profile, enhance, console);
+      other.enhance = enhance;
+      const MaskSource masks = enhanced_masks(job, other, target, console);
       const ScoreSheet sheet =
           score_masks(masks, header, target, models, "scoring (" + enhance + ")", console);
       json["compare"][enhance] = to_json(sheet);

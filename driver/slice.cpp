@@ -84,8 +84,9 @@ std::vector<Part> load_parts(const SliceOptions& options, const JobHeader& heade
     Placement placement = options.placement;
     if (i < options.at.size()) {
       const auto at = split<double>("--at", options.at[i], ',', 2);
-      if (!at[0] || !at[1]) throw Error(ErrorKind::kUsage, "--at", "needs X,Y in mm");
-      placement.at_mm = {*at[0], *at[1]};
+      const auto [x, y] = std::pair(at[0], at[1]);
+      if (!x || !y) throw Error(ErrorKind::kUsage, "--at", "needs X,Y in mm");
+      placement.at_mm = {*x, *y};
     }
     parts.push_back(load_part(options.parts[i], unit_mm, placement, true));
     if (!options.texture.empty()) use_texture(options.texture, parts.back().paint);

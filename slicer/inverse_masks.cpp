@@ -78,10 +78,9 @@ LayerBlock mend_block(const SearchModel& by, std::span<const Shared<LayerBlock>>
 }
 
 // `layers` as mend_ranges() wants them and as much more as their features need.
-std::unique_ptr<Stream<PrintedLayer>> mended_layers(std::unique_ptr<Stream<InverseLayer>> layers,
-                                                    const std::vector<LayerRange>& ranges,
-                                                    int job_layers,
-                                                    std::shared_ptr<const InverseSolver> solver) {
+std::unique_ptr<Stream<PrintedLayer>> mended_layers(
+    std::unique_ptr<Stream<InverseLayer>> layers, const std::vector<LayerRange>& ranges,
+    int job_layers, const std::shared_ptr<const InverseSolver>& solver) {
   using Print = Step<InverseLayer, PrintedLayer>;
   std::unique_ptr<Stream<PrintedLayer>> out = std::make_unique<Print>(
       std::move(layers), grown(ranges.front(), 1, job_layers), solver->print_reach(), job_layers,
@@ -108,9 +107,9 @@ std::unique_ptr<Stream<PrintedLayer>> mended_layers(std::unique_ptr<Stream<Inver
 
 }  // namespace
 
-std::unique_ptr<Stream<MaskLayer>> inverse_masks(TargetFrom target_from, LayerRange layers,
-                                                 int job_layers,
-                                                 std::shared_ptr<const InverseSolver> solver) {
+std::unique_ptr<Stream<MaskLayer>> inverse_masks(
+    const TargetFrom& target_from, LayerRange layers, int job_layers,
+    const std::shared_ptr<const InverseSolver>& solver) {
   const std::vector<InverseTurn> turns = inverse_turns(*solver);
   const std::vector<LayerRange> mends = mend_ranges(layers, job_layers);
   const LayerRange settled = grown(mends.front(), 1 + solver->print_reach(), job_layers);

@@ -22,7 +22,7 @@ struct SlicedLayer {
 // What the printer makes of each layer, which may take the masks around it.
 std::unique_ptr<Stream<PassLayer>> with_print(std::unique_ptr<Stream<SlicedLayer>> sliced,
                                               LayerRange layers, int job_layers,
-                                              std::shared_ptr<const PrinterModel> model) {
+                                              const std::shared_ptr<const PrinterModel>& model) {
   using Print = Step<SlicedLayer, PassLayer>;
   return std::make_unique<Print>(
       std::move(sliced), layers, model->window_reach(), job_layers,
@@ -52,9 +52,9 @@ std::unique_ptr<Stream<MaskLayer>> plain_masks(VoxelStream target, const Grid& g
       });
 }
 
-std::unique_ptr<Stream<MaskLayer>> paper_masks(TargetFrom target_from, const Grid& grid,
+std::unique_ptr<Stream<MaskLayer>> paper_masks(const TargetFrom& target_from, const Grid& grid,
                                                LayerRange layers, int job_layers,
-                                               std::shared_ptr<const PrinterModel> model,
+                                               const std::shared_ptr<const PrinterModel>& model,
                                                int passes) {
   if (passes == 0) return plain_masks(target_from(layers), grid, layers, job_layers);
 
@@ -93,18 +93,18 @@ std::unique_ptr<Stream<MaskLayer>> plain_masks(std::shared_ptr<const Mesh> mesh,
 
 std::unique_ptr<Stream<MaskLayer>> paper_masks(std::shared_ptr<const Mesh> mesh, const Grid& grid,
                                                const JobBox& box, LayerRange layers,
-                                               std::shared_ptr<const PrinterModel> model,
+                                               const std::shared_ptr<const PrinterModel>& model,
                                                int passes) {
   return paper_masks([&](LayerRange range) { return voxelize(std::move(mesh), grid, box, range); },
-                     grid, layers, box.size_px[2], std::move(model), passes);
+                     grid, layers, box.size_px[2], model, passes);
 }
 
-std::unique_ptr<Stream<MaskLayer>> inverse_masks(std::shared_ptr<const Mesh> mesh, const Grid& grid,
-                                                 const JobBox& box, LayerRange layers,
-                                                 std::shared_ptr<const InverseSolver> solver) {
+std::unique_ptr<Stream<MaskLayer>> inverse_masks(
+    std::shared_ptr<const Mesh> mesh, const Grid& grid, const JobBox& box, LayerRange layers,
+    const std::shared_ptr<const InverseSolver>& solver) {
   return inverse_masks(
       [&](LayerRange range) { return voxelize(std::move(mesh), grid, box, range); }, layers,
-      box.size_px[2], std::move(solver));
+      box.size_px[2], solver);
 }
 
 }  // namespace binderjet

@@ -35,9 +35,9 @@ using TargetFrom = std::function<std::unique_ptr<Stream<VoxelLayer>>(LayerRange)
 // one above, so it holds 3 rz voxel layers, and kBlockLayers - 1 more printed layers to keep the
 // cores busy; as runs these are smaller than the paper's four layers of voxels. A model whose
 // binder crosses layers adds its window_reach() of masks on each side.
-std::unique_ptr<Stream<MaskLayer>> paper_masks(TargetFrom target_from, const Grid& grid,
+std::unique_ptr<Stream<MaskLayer>> paper_masks(const TargetFrom& target_from, const Grid& grid,
                                                LayerRange layers, int job_layers,
-                                               std::shared_ptr<const PrinterModel> model,
+                                               const std::shared_ptr<const PrinterModel>& model,
                                                int passes);
 
 // The masks that print nearest to the target (slicer/enhance/inverse.h). A model whose binder
@@ -46,19 +46,19 @@ std::unique_ptr<Stream<MaskLayer>> paper_masks(TargetFrom target_from, const Gri
 // off are searched again, three times, with their neighbours' prints known. What still prints where
 // no part is goes, and what no single layer could set right is mended over many at once
 // (slicer/enhance/mend.h).
-std::unique_ptr<Stream<MaskLayer>> inverse_masks(TargetFrom target_from, LayerRange layers,
-                                                 int job_layers,
-                                                 std::shared_ptr<const InverseSolver> solver);
+std::unique_ptr<Stream<MaskLayer>> inverse_masks(
+    const TargetFrom& target_from, LayerRange layers, int job_layers,
+    const std::shared_ptr<const InverseSolver>& solver);
 
 // The same from a mesh whose lower corner is at (0, 0, 0).
 std::unique_ptr<Stream<MaskLayer>> plain_masks(std::shared_ptr<const Mesh> mesh, const Grid& grid,
                                                const JobBox& box, LayerRange layers);
 std::unique_ptr<Stream<MaskLayer>> paper_masks(std::shared_ptr<const Mesh> mesh, const Grid& grid,
                                                const JobBox& box, LayerRange layers,
-                                               std::shared_ptr<const PrinterModel> model,
+                                               const std::shared_ptr<const PrinterModel>& model,
                                                int passes);
-std::unique_ptr<Stream<MaskLayer>> inverse_masks(std::shared_ptr<const Mesh> mesh, const Grid& grid,
-                                                 const JobBox& box, LayerRange layers,
-                                                 std::shared_ptr<const InverseSolver> solver);
+std::unique_ptr<Stream<MaskLayer>> inverse_masks(
+    std::shared_ptr<const Mesh> mesh, const Grid& grid, const JobBox& box, LayerRange layers,
+    const std::shared_ptr<const InverseSolver>& solver);
 
 }  // namespace binderjet

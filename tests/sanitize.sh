@@ -8,8 +8,8 @@ cd "$(dirname "$0")/.."
 build=${1:-build-sanitize}
 tests=(transport_test emulator_test usb_test fuzz_test)
 
-cmake -S . -B "$build" -G Ninja -DCMAKE_BUILD_TYPE=None \
-  -DCMAKE_CXX_FLAGS="-O1 -g1 -fsanitize=address,undefined -fno-sanitize-recover=undefined"
+flags="-O1 -g1 -D_GLIBCXX_ASSERTIONS -fsanitize=address,undefined -fno-sanitize-recover=undefined"
+cmake -S . -B "$build" -G Ninja -DCMAKE_BUILD_TYPE=None -DCMAKE_CXX_FLAGS="$flags"
 cmake --build "$build" -j 2 -t binderjet "${tests[@]}"
 
 # The preloaded part of umockdev comes before the sanitizer's, which is right here.

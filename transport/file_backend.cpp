@@ -52,7 +52,7 @@ class FileBackend : public Backend {
       writer_.reset();
       return fault(fmt::format("the job ended before layer {} of {}", due, layer_count_));
     }
-    const auto done = writer_->finish();
+    auto done = writer_->finish();
     writer_.reset();
     return done;
   }

@@ -22,12 +22,13 @@ struct Head {
   std::uint32_t payload_bytes;
 };
 
-std::optional<Head> decode_head(View bytes) {
-  if (bytes.size() < kFrameHeadBytes || get_le<std::uint32_t>(bytes, 0) != kMagic ||
-      get_le<std::uint64_t>(bytes, 24) != checksum(bytes.first(24)) ||
-      get_le<std::uint32_t>(bytes, 4) > 0xff) {
-    return std::nullopt;
-  }
+bool is_head(View bytes) {
+  return bytes.size() >= kFrameHeadBytes && get_le<std::uint32_t>(bytes, 0) == kMagic &&
+         get_le<std::uint64_t>(bytes, 24) == checksum(bytes.first(24)) &&
+         get_le<std::uint32_t>(bytes, 4) <= 0xff;
+}
+
+Head decode_head(View bytes) {
   return Head{static_cast<Type>(get_le<std::uint8_t>(bytes, 4)), get_le<std::uint32_t>(bytes, 8),
               get_le<std::uint32_t>(bytes, 12)};
 }
@@ -67,19 +68,18 @@ std::size_t FrameDecoder::feed(View bytes) {
 }
 
 void FrameDecoder::look_at_head() {
-  const std::optional<Head> head = decode_head(buffer_);
-  if (!head) {
+  if (!is_head(buffer_)) {
     fault_ = "bytes that are no frame";
-  } else if (head->payload_bytes > max_payload_) {
-    fault_ =
-        fmt::format("a frame of {} bytes where {} are the most", head->payload_bytes, max_payload_);
-  } else {
-    payload_bytes_ = head->payload_bytes;
+    return;
+  }
+  payload_bytes_ = decode_head(buffer_).payload_bytes;
+  if (payload_bytes_ > max_payload_) {
+    fault_ = fmt::format("a frame of {} bytes where {} are the most", payload_bytes_, max_payload_);
   }
 }
 
 void FrameDecoder::look_at_payload() {
-  const Head head = *decode_head(buffer_);
+  const Head head = decode_head(buffer_);
   const View payload = View(buffer_).subspan(kFrameHeadBytes);
   if (checksum(payload) != get_le<std::uint64_t>(buffer_, 16)) {
     fault_ = "a frame with a wrong checksum";

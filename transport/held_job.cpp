@@ -39,10 +39,11 @@ Result<HeldJob> open_held_job(const Spool& spool, const std::string& id, const J
   if (path_exists(spool.incoming(id))) return refuse("is being sent by another process");
   const std::string folder = spool.held(id);
   if (!path_exists(folder)) return tl::unexpected(unknown_job(where, id));
-  Result<std::optional<Journal>> journal = Journal::open(folder + "/journal");
-  if (!journal) return tl::unexpected(journal.error());
-  if (!journal->has_value()) return refuse("is being looked at by another process; try again");
-  const JournalState& state = (*journal)->state();
+  Result<std::optional<Journal>> opened = Journal::open(folder + "/journal");
+  if (!opened) return tl::unexpected(opened.error());
+  std::optional<Journal> journal = *std::move(opened);
+  if (!journal) return refuse("is being looked at by another process; try again");
+  const JournalState& state = journal->state();
   if (!state.started) return refuse("has a damaged journal: cancel it and print again");
   // Looked at before anything is changed: a wrong ticket leaves the job as it is.
   const std::string part = folder + "/job.part";
@@ -51,7 +52,7 @@ Result<HeldJob> open_held_job(const Spool& spool, const std::string& id, const J
   if (stored->header() != ticket.header || state.layer_count != ticket.layer_count) {
     return refuse("was started from another job file: give that one");
   }
-  return HeldJob{id, part, std::move(**journal)};
+  return HeldJob{id, part, *std::move(journal)};
 }
 
 Result<void> take_up(const Spool& spool, HeldJob& job, JobWriter& writer) {

@@ -146,7 +146,7 @@ Result<std::vector<std::byte>> JobReader::read_record(RecordKind kind, int layer
 }
 
 Result<std::vector<std::byte>> JobReader::read(RecordKind kind, int layer) const {
-  const Result<std::vector<std::byte>> record = read_record(kind, layer);
+  Result<std::vector<std::byte>> record = read_record(kind, layer);
   if (!record) return record;
   const IndexEntry& entry = *find(kind, layer);
   const std::optional<RecordHead> head = decode_record_head(*record);

@@ -291,7 +291,7 @@ Result<int> UsbBackend::resume(const std::string& id, const JobTicket& ticket) {
   if (!same) return stopped(same.error());
   same->patience = uri_.patience;
   if (auto done = connect_for_job(*same, state.to); !done) return stopped(done.error());
-  const Result<int> first =
+  Result<int> first =
       job_->resume(state.key, state.layer_count, ticket.header, state.acknowledged, state.digest);
   if (!first) return stopped(first.error());
   next_ = *first;

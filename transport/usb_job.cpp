@@ -67,11 +67,12 @@ Result<protocol::Welcome> UsbJob::greet() {
 // Waits for one kind of message; others are taken as they come.
 Result<Frame> UsbJob::answer(Type type, Clock::time_point until) {
   while (true) {
-    Result<std::optional<Frame>> frame = session_->next(until);
-    if (!frame) return tl::unexpected(frame.error());
-    if (!*frame) return broken("the printer does not answer");
-    if ((*frame)->type == type) return std::move(**frame);
-    if (auto done = take(**frame); !done) return tl::unexpected(done.error());
+    Result<std::optional<Frame>> next = session_->next(until);
+    if (!next) return tl::unexpected(next.error());
+    std::optional<Frame> frame = *std::move(next);
+    if (!frame) return broken("the printer does not answer");
+    if (frame->type == type) return *std::move(frame);
+    if (auto done = take(*frame); !done) return tl::unexpected(done.error());
   }
 }
 
@@ -194,15 +195,16 @@ Result<void> UsbJob::run_until(const Done& done) {
     post_layers();
     // What is there already is taken even if nobody has to wait for it: acknowledgements make room.
     const bool over = done();
-    Result<std::optional<Frame>> frame =
+    const Result<std::optional<Frame>> next =
         session_->next(over ? Clock::now() : Clock::now() + std::chrono::seconds(1));
+    const std::optional<Frame> frame = next.value_or(std::nullopt);
     Result<void> taken;
     healable_ = false;
-    if (!frame) {
+    if (!next) {
       healable_ = session_->worth_retrying();
-      taken = tl::unexpected(frame.error());
-    } else if (*frame) {
-      taken = take(**frame);
+      taken = tl::unexpected(next.error());
+    } else if (frame) {
+      taken = take(*frame);
     } else if (over) {
       return {};
     }

@@ -105,7 +105,8 @@ void add_streaks(CandidateList& list) {
         // Where a streak begins is found to a layer by the fit.
         for (int fifth = 1; fifth < 5; ++fifth) {
           const double to = from + width;
-          const double at = (job.first_layer + fifth * job.layers() / 5) * job.grid.pitch_mm[2];
+          const int layer = job.first_layer + fifth * job.layers() / 5;
+          const double at = layer * job.grid.pitch_mm[2];
           list.add("recoat_streak", {across, "window", {{"from_mm", {from}}, {"to_mm", {to}}}},
                    {{Basis::kDose,
                      [axis, from, to, at](const Spot& s) {

@@ -228,7 +228,7 @@ WrongCounts Calibrator::counts_of(const Model& model) const {
   return wrong_counts(job_, print_layers(job_, model, seen_));
 }
 
-Model Calibrator::refit_with_taken(Model model, std::size_t effect, int rounds) const {
+Model Calibrator::refit_with_taken(const Model& model, std::size_t effect, int rounds) const {
   std::vector<FreeNumber> numbers = numbers_of_taken();
   const auto own = free_numbers(model, effect);
   numbers.insert(numbers.end(), own.begin(), own.end());

@@ -57,7 +57,7 @@ class Calibrator {
   std::vector<Fitted> tried();
   bool take_best(std::vector<Fitted> fitted);
   std::vector<std::string> rivals_of(const std::vector<Fitted>& fitted, std::size_t best) const;
-  Model refit_with_taken(Model model, std::size_t effect, int rounds) const;
+  Model refit_with_taken(const Model& model, std::size_t effect, int rounds) const;
   WrongCounts counts_of(const Model& model) const;
   Errors errors_of(const Model& model) const;
   void drop_superseded();

@@ -59,8 +59,8 @@ struct Readings {
     }
     out.columns = MatrixXd::Zero(error.size(), static_cast<Eigen::Index>(out.names.size()));
     for (std::size_t i = 0; i < block.size(); ++i) {
-      if (places[i]) {
-        out.columns(static_cast<Eigen::Index>(i), *places[i]) = value(*block[i], axis[i]);
+      if (const auto place = places[i]) {
+        out.columns(static_cast<Eigen::Index>(i), *place) = value(*block[i], axis[i]);
       }
     }
     return out;

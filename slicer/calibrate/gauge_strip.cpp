@@ -114,7 +114,8 @@ GaugePrint print_gauge(const PrinterModel& model, const Grid& grid, GaugeKind ki
     const std::vector<bool> printed =
         axis == 2 ? print_column(model, grid, line) : print_line(model, grid, axis, line);
     // Near the ends of the line binder from beyond is missing, so only what lies deeper counts.
-    const std::ptrdiff_t edge = (axis == 2 ? 1 : grid.detail_vx[a]) * (margin / 2);
+    const std::ptrdiff_t detail = axis == 2 ? 1 : grid.detail_vx[a];
+    const std::ptrdiff_t edge = detail * (margin / 2);
     const auto shown =
         std::count(printed.begin() + edge, printed.end() - edge, kind == GaugeKind::kWall);
     print.mean_mm += static_cast<double>(shown) * sample_mm / kPlaces;

@@ -27,7 +27,7 @@ ColumnCounts wrong_in_layer(const MeasuredJob& job, int layer, const RunLayer& p
     const RunLayer& measured = *print[static_cast<std::size_t>(layer)];
     for (int y = 0; y < printed.height(); ++y) {
       rows::difference(printed.row(y), measured.row(y), row);
-      std::int64_t* columns = out.data() + kSlabs * slab_of(y, printed.height());
+      std::int64_t* columns = out.data() + std::ptrdiff_t{kSlabs} * slab_of(y, printed.height());
       for (std::size_t i = 0; i < row.size(); i += 2) {
         // Runs are short beside a slab: the middle says where one is.
         columns[slab_of((row[i] + row[i + 1]) / 2, width)] += row[i + 1] - row[i];

@@ -22,7 +22,7 @@ int cell_of(int slab_x, int slab_y, int slab_z);
 int slab_of_cell(int cell, int axis);
 
 // Wrong voxels in each of kSlabs x kSlabs columns of a layer, summed over the replicates.
-using ColumnCounts = std::array<std::int64_t, kSlabs * kSlabs>;
+using ColumnCounts = std::array<std::int64_t, std::size_t{kSlabs} * kSlabs>;
 // Per layer of the job; what was not looked at is 0.
 using WrongCounts = std::vector<ColumnCounts>;
 

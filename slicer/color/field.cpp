@@ -24,7 +24,7 @@ using Search = CGAL::Orthogonal_k_neighbor_search<Traits>;
 
 class SampleField : public ColorField {
  public:
-  SampleField(std::vector<Point> samples, std::vector<Rgb> colors, int neighbors)
+  SampleField(const std::vector<Point>& samples, std::vector<Rgb> colors, int neighbors)
       : colors_(std::move(colors)), neighbors_(neighbors) {
     places_.reserve(samples.size());
     for (const Point& p : samples) places_.emplace_back(p[0], p[1], p[2]);

@@ -155,10 +155,9 @@ class SurfaceField : public ColorField {
  private:
   class Slab : public ColorSlab {
    public:
-    Slab(const SurfaceField& field, std::vector<int> triangles) : field_(field) {
+    Slab(const SurfaceField& field, const std::vector<int>& triangles) : field_(field) {
       if (triangles.empty()) return;
-      const std::vector<int>& order = triangles;
-      tree_.insert(order.begin(), order.end(), field.view());
+      tree_.insert(triangles.begin(), triangles.end(), field.view());
       tree_.build();
       empty_ = false;
     }

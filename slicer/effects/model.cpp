@@ -110,18 +110,19 @@ void PrinterModel::choose_filter(const Grid& grid, const JobPlace& place) {
   const PlacedDose& placed = form_.placed;
   const bool anywhere = placed.gains.empty() && placed.shifts.empty() && placed.weak_drops.empty();
   if (form_.terms.size() == 1 && first.layer == 0 && first.gain == 1 && x && y && anywhere) {
-    box_ = OneBox{*x, *y, least_sum(*x, *y, form_.level)};
+    filter_ = OneBox{*x, *y, least_sum(*x, *y, form_.level)};
   } else {
-    filter_.emplace(form_.terms, form_.level, grid, form_.placed, place);
+    filter_.emplace<DoseFilter>(form_.terms, form_.level, grid, form_.placed, place);
   }
 }
 
 RunLayer PrinterModel::bind(std::span<const RunLayer* const> window, int layer) const {
   const ModelForm::Received masks = form_.received(window, layer);
-  RunLayer printed = box_ ? box_threshold(*masks.masks[masks.masks.size() / 2], repeat_, box_->x,
-                                          box_->y, box_->least)
-                          : (*filter_)(masks.masks, layer);
-  for (const std::array<int, 2>& box : form_.survive_vx) printed = opening(printed, box);
+  const auto* box = std::get_if<OneBox>(&filter_);
+  RunLayer printed = box != nullptr ? box_threshold(*masks.masks[masks.masks.size() / 2], repeat_,
+                                                    box->x, box->y, box->least)
+                                    : std::get<DoseFilter>(filter_)(masks.masks, layer);
+  for (const std::array<int, 2>& least : form_.survive_vx) printed = opening(printed, least);
   return printed;
 }
 

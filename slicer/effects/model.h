@@ -6,8 +6,8 @@
 #include <cstdint>
 #include <functional>
 #include <memory>
-#include <optional>
 #include <span>
+#include <variant>
 #include <vector>
 
 #include "slicer/dose_filter.h"
@@ -105,8 +105,7 @@ class PrinterModel {
   std::array<int, 2> repeat_;
   ModelForm form_;
   Reach reach_;
-  std::optional<OneBox> box_;
-  std::optional<DoseFilter> filter_;
+  std::variant<OneBox, DoseFilter> filter_;
 };
 
 }  // namespace binderjet

@@ -128,7 +128,7 @@ PixelReasons InverseSolver::reasons(LayerWindow layers, int x, int y) const {
     return out;
   };
   const int* first = solid.at(voxels.x0, voxels.y0);
-  why.target_share = std::accumulate(first, first + rx * ry, 0.0) / (rx * ry * rz);
+  why.target_share = std::accumulate(first, first + std::ptrdiff_t{rx} * ry, 0.0) / (rx * ry * rz);
   why.nominal_cost = dose.nominal_cost(x, y, sign);
   why.window_cost = dose.flip_cost(x, y, sign);
   why.dose = doses();

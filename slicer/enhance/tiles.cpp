@@ -27,7 +27,7 @@ std::uint64_t ones_from(int place) {
 
 // The words of `rows` rows of two flips each, column x first. Most of a real part's rows are such.
 BINDERJET_VECTOR_CLONES void draw_pairs(const int* flips, int rows, int x, std::uint64_t* words) {
-  for (int r = 0; r < rows; ++r) {
+  for (std::ptrdiff_t r = 0; r < rows; ++r) {
     words[r] = ones_from(flips[2 * r] - x) ^ ones_from(flips[2 * r + 1] - x);
   }
 }

@@ -19,9 +19,9 @@ WindowPlaces::WindowPlaces(const PrinterModel& model, const Grid& grid, LayerWin
   }
   for (const int offset : offsets.printed) {
     if (!form.placed.density_radius_mm || layer_at(layers, offset) == nullptr) continue;
-    std::optional<DensityField> density =
-        density_of(masks_around(layers, offset, model), grid_, form.placed);
-    densities_.emplace(offset, *std::move(density));
+    if (auto density = density_of(masks_around(layers, offset, model), grid_, form.placed)) {
+      densities_.emplace(offset, *std::move(density));
+    }
   }
 }
 

@@ -67,8 +67,8 @@ class Layout {
     std::vector<std::size_t> loose;
     for (std::size_t i = 0; i < parts_.size(); ++i) {
       check_size(parts_[i]);
-      if (parts_[i].at_mm) {
-        spots[i] = place_fixed(i);
+      if (const auto& at_mm = parts_[i].at_mm) {
+        spots[i] = place_fixed(i, *at_mm);
       } else {
         loose.push_back(i);
       }
@@ -121,28 +121,27 @@ class Layout {
         fmt::format("{} does not fit the bed of {}{}", size_text(size), bed_text(bed_), hint));
   }
 
-  BedSpot place_fixed(std::size_t index) {
+  BedSpot place_fixed(std::size_t index, const std::array<double, 2>& at_mm) {
     const BedRequest& part = parts_[index];
     Rectangle place = rectangle(part);
-    place.x = static_cast<int>(std::lround((*part.at_mm)[0] / bed_.pitch_mm[0]));
-    place.y = static_cast<int>(std::lround((*part.at_mm)[1] / bed_.pitch_mm[1]));
+    place.x = static_cast<int>(std::lround(at_mm[0] / bed_.pitch_mm[0]));
+    place.y = static_cast<int>(std::lround(at_mm[1] / bed_.pitch_mm[1]));
     if (place.x < 0 || place.y < 0 || place.x + place.width > bed_.pixels(0) ||
         place.y + place.depth > bed_.pixels(1)) {
       throw Error(
           ErrorKind::kBadInput, part.where,
           fmt::format("at {:g},{:g} it reaches {:.1f},{:.1f} mm, off the bed of {}; --at up "
                       "to {:.1f},{:.1f} fits",
-                      (*part.at_mm)[0], (*part.at_mm)[1], (*part.at_mm)[0] + part.size_mm[0],
-                      (*part.at_mm)[1] + part.size_mm[1], bed_text(bed_),
-                      (bed_.pixels(0) - place.width) * bed_.pitch_mm[0],
+                      at_mm[0], at_mm[1], at_mm[0] + part.size_mm[0], at_mm[1] + part.size_mm[1],
+                      bed_text(bed_), (bed_.pixels(0) - place.width) * bed_.pitch_mm[0],
                       (bed_.pixels(1) - place.depth) * bed_.pitch_mm[1]));
     }
     for (std::size_t i = 0; i < taken_.size(); ++i) {
       // Who says --at may put parts as near as he likes, but not into each other.
       if (place.meets(taken_[i], 0, 0)) {
         throw Error(ErrorKind::kBadInput, part.where,
-                    fmt::format("at {:g},{:g} it stands in {}; choose another --at",
-                                (*part.at_mm)[0], (*part.at_mm)[1], parts_[owners_[i]].where));
+                    fmt::format("at {:g},{:g} it stands in {}; choose another --at", at_mm[0],
+                                at_mm[1], parts_[owners_[i]].where));
       }
     }
     take(place, index);
