@@ -54,8 +54,10 @@ class UsbProgram : public PrinterTest {
     }
     dup2(open(out.c_str(), O_WRONLY | O_CREAT, 0666), STDOUT_FILENO);
     dup2(open(err.c_str(), O_WRONLY | O_CREAT, 0666), STDERR_FILENO);
+    // Opened before: the other user need not come into the folder that this was built in.
+    const int program = open(BINDERJET_PROGRAM, O_RDONLY | O_CLOEXEC);
     if (user != 0 && setuid(user) != 0) _exit(127);
-    execv(argv[0], argv.data());
+    fexecve(program, argv.data(), environ);
     _exit(127);
   }
   Ended wait(pid_t child) {
