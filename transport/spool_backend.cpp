@@ -8,10 +8,7 @@
 #include <utility>
 
 #include "transport/backend.h"
-#include "transport/held_job.h"
-#include "transport/job_file.h"
-#include "transport/journal.h"
-#include "transport/spool.h"
+#include "transport/spooled_job.h"
 
 namespace binderjet {
 namespace {
@@ -41,37 +38,19 @@ class SpoolBackend : public Backend {
  private:
   std::string where() const { return "spool:" + spool_.folder(); }
   Fault fault(FaultKind kind, std::string what) const { return {kind, where(), std::move(what)}; }
-  Result<void> open_job(const std::string& id, const JobTicket& ticket);
   Result<void> check_wanted();
   Result<void> acknowledge();
   // Holds the job, says why, and hands the fault on.
   tl::unexpected<Fault> stopped(Fault fault);
   void stop(const std::string& reason);
-  void close();
 
   Spool spool_;
-  std::string id_;  // of the job being sent, or empty
-  int layer_count_ = 0;
-  int next_ = 0;  // the layer that comes next
-  std::optional<JobWriter> writer_;
-  std::optional<Journal> journal_;
+  std::optional<SpooledJob> job_;  // that is being sent
   Clock::time_point last_sync_;
 };
 
-void SpoolBackend::close() {
-  id_.clear();
-  writer_.reset();
-  journal_.reset();
-}
-
 void SpoolBackend::stop(const std::string& reason) {
-  if (id_.empty()) return;
-  const Result<File> lock = spool_.lock();
-  // A full disk may refuse the line; the folder's place says the same.
-  if (journal_) static_cast<void>(journal_->held(reason));
-  // Should this fail too, the next process that looks finds a job without a sender and holds it.
-  if (lock) static_cast<void>(spool_.hold(id_));
-  close();
+  if (job_) hold_job(spool_, *std::exchange(job_, std::nullopt), reason);
 }
 
 tl::unexpected<Fault> SpoolBackend::stopped(Fault fault) {
@@ -79,141 +58,72 @@ tl::unexpected<Fault> SpoolBackend::stopped(Fault fault) {
   return tl::unexpected(std::move(fault));
 }
 
-Result<void> SpoolBackend::open_job(const std::string& id, const JobTicket& ticket) {
-  const std::string folder = spool_.incoming(id);
-  if (auto done = make_folder(folder); !done) return done;
-  Result<JobWriter> writer =
-      JobWriter::create_kept(folder + "/job.part", spool_.done_job(id), ticket.header);
-  if (!writer) return tl::unexpected(writer.error());
-  if (auto done = writer->sync(); !done) return done;
-  JournalState state;
-  state.layer_count = ticket.layer_count;
-  state.name = ticket.name;
-  state.source = ticket.source;
-  Result<Journal> journal = Journal::create(folder + "/journal", state);
-  if (!journal) return tl::unexpected(journal.error());
-  if (auto done = sync_folder(folder); !done) return done;
-  if (auto done = sync_folder(folder_of(folder)); !done) return done;
-  writer_ = std::move(*writer);
-  journal_ = std::move(*journal);
-  return {};
-}
-
 Result<std::string> SpoolBackend::start(const JobTicket& ticket) {
   if (auto done = spool_.create(); !done) return tl::unexpected(done.error());
   const Result<File> lock = spool_.lock();
   if (!lock) return tl::unexpected(lock.error());
-  Result<std::string> id = spool_.new_id(*lock);
-  if (!id) return id;
-  if (auto done = open_job(*id, ticket); !done) {
-    static_cast<void>(spool_.remove(spool_.incoming(*id)));
-    return tl::unexpected(done.error());
-  }
-  id_ = *id;
-  layer_count_ = ticket.layer_count;
-  next_ = 0;
+  Result<SpooledJob> job = start_job(spool_, *lock, ticket);
+  if (!job) return tl::unexpected(job.error());
+  job_ = *std::move(job);
   last_sync_ = Clock::time_point();
-  return id;
+  return job_->id;
 }
 
 Result<int> SpoolBackend::resume(const std::string& id, const JobTicket& ticket) {
   const Result<File> lock = spool_.lock();
   if (!lock) return tl::unexpected(lock.error());
-  Result<HeldJob> held = open_held_job(spool_, id, ticket, where());
-  if (!held) return tl::unexpected(held.error());
-  const JournalState state = held->journal.state();
-  if (state.bytes == 0 && state.acknowledged > 0) {
-    return tl::unexpected(
-        cannot_resume(where(), id, "has a damaged journal: cancel it and print again"));
-  }
-  // Before its first acknowledgement a job is its header alone.
-  const std::uint64_t bytes =
-      state.bytes != 0 ? state.bytes : job_format::kPreambleBytes + ticket.header.size();
-  Result<JobWriter> writer = JobWriter::reopen_kept(held->part, spool_.done_job(id), bytes);
-  if (!writer) return tl::unexpected(writer.error());
-  if (writer->last_layer() != state.acknowledged - 1) {
-    return tl::unexpected(
-        cannot_resume(where(), id, "has lost acknowledged layers: cancel it and print again"));
-  }
-  if (auto done = take_up(spool_, *held, *writer); !done) return tl::unexpected(done.error());
-  writer_ = std::move(*writer);
-  journal_ = std::move(held->journal);
-  id_ = id;
-  layer_count_ = state.layer_count;
-  next_ = state.acknowledged;
+  Result<SpooledJob> job = resume_job(spool_, id, ticket, where());
+  if (!job) return tl::unexpected(job.error());
+  job_ = *std::move(job);
   last_sync_ = Clock::time_point();
-  return next_;
+  return job_->next;
 }
 
 Result<void> SpoolBackend::acknowledge() {
-  if (journal_->state().acknowledged == next_) return {};
+  if (job_->journal.state().acknowledged == job_->next) return {};
   // First the layers, then the line that promises them.
-  if (auto done = writer_->sync(); !done) return done;
-  if (auto done = journal_->acknowledge(next_, writer_->bytes()); !done) return done;
+  if (auto done = job_->writer.sync(); !done) return done;
+  if (auto done = job_->journal.acknowledge(job_->next, job_->writer.bytes()); !done) return done;
   last_sync_ = Clock::now();
   return {};
 }
 
 // A job that somebody cancelled is removed by its sender, who alone knows that nobody writes to it.
 Result<void> SpoolBackend::check_wanted() {
-  if (!path_exists(spool_.incoming(id_) + "/cancel")) return {};
-  const std::string what = fmt::format("job {} was cancelled before layer {}", id_, next_);
+  if (!cancel_asked(spool_, *job_)) return {};
+  const std::string what =
+      fmt::format("job {} was cancelled before layer {}", job_->id, job_->next);
   if (const Result<File> lock = spool_.lock()) {
-    static_cast<void>(spool_.remove(spool_.incoming(id_)));
+    static_cast<void>(spool_.remove(spool_.incoming(job_->id)));
   }
-  close();
+  job_.reset();
   return tl::unexpected(fault(FaultKind::kInterrupted, what));
 }
 
 Result<int> SpoolBackend::send(int layer, std::span<const std::byte> records) {
-  if (id_.empty()) return tl::unexpected(fault(FaultKind::kBadInput, "no job was started"));
+  if (!job_) return tl::unexpected(fault(FaultKind::kBadInput, "no job was started"));
   if (auto wanted = check_wanted(); !wanted) return tl::unexpected(wanted.error());
-  if (layer != next_ || layer >= layer_count_) {
-    return stopped(fault(
-        FaultKind::kBadInput,
-        fmt::format("layer {} came where layer {} of {} was due", layer, next_, layer_count_)));
-  }
-  if (auto done = writer_->append(records); !done) return stopped(done.error());
-  if (writer_->last_layer() != layer) {
+  if (auto due = check_next(*job_, layer, where()); !due) return stopped(due.error());
+  if (auto done = job_->writer.append(records); !done) return stopped(done.error());
+  if (job_->writer.last_layer() != layer) {
     return stopped(
         fault(FaultKind::kBadInput, fmt::format("layer {} came without its records", layer)));
   }
-  ++next_;
-  if (next_ - journal_->state().acknowledged >= kBatchLayers ||
-      writer_->bytes() - journal_->state().bytes >= kBatchBytes ||
-      Clock::now() - last_sync_ >= kBatchTime) {
+  ++job_->next;
+  const JournalState& kept = job_->journal.state();
+  if (job_->next - kept.acknowledged >= kBatchLayers ||
+      job_->writer.bytes() - kept.bytes >= kBatchBytes || Clock::now() - last_sync_ >= kBatchTime) {
     if (auto done = acknowledge(); !done) return stopped(done.error());
   }
-  return journal_->state().acknowledged;
+  return kept.acknowledged;
 }
 
 Result<void> SpoolBackend::end() {
-  if (id_.empty()) return tl::unexpected(fault(FaultKind::kBadInput, "no job was started"));
-  if (next_ != layer_count_) {
-    return stopped(fault(FaultKind::kBadInput,
-                         fmt::format("the job ended before layer {} of {}", next_, layer_count_)));
-  }
+  if (!job_) return tl::unexpected(fault(FaultKind::kBadInput, "no job was started"));
+  if (auto whole = check_all_came(*job_, where()); !whole) return stopped(whole.error());
   if (auto wanted = check_wanted(); !wanted) return wanted;
   if (auto done = acknowledge(); !done) return stopped(done.error());
-  {
-    const Result<File> lock = spool_.lock();
-    if (!lock) return tl::unexpected(lock.error());
-    if (auto done = writer_->finish(); !done) {
-      const Fault why = done.error();
-      if (path_exists(spool_.done_job(id_))) {
-        close();  // the job has its name, its folder could not be synced: recover() does the rest
-        return tl::unexpected(why);
-      }
-      static_cast<void>(journal_->held(why.what));
-      static_cast<void>(spool_.hold(id_));
-      close();
-      return tl::unexpected(why);
-    }
-    // The job is there; what is left of its folder the next process can put in order as well.
-    static_cast<void>(spool_.file_away(id_));
-  }
-  close();
-  return {};
+  return finish_job(spool_, *std::exchange(job_, std::nullopt));
 }
 
 Result<std::vector<JobStatus>> SpoolBackend::status() {
@@ -225,18 +135,10 @@ Result<std::vector<JobStatus>> SpoolBackend::status() {
 Result<void> SpoolBackend::cancel(const std::string& id) {
   const Result<File> lock = spool_.lock();
   if (!lock) return tl::unexpected(lock.error());
-  if (!is_job_id(id)) return tl::unexpected(unknown_job(where(), id));
-  if (path_exists(spool_.held(id))) return spool_.remove(spool_.held(id));
-  if (path_exists(spool_.incoming(id))) {
-    const Result<File> mark = open_file(spool_.incoming(id) + "/cancel", O_WRONLY | O_CREAT);
-    if (!mark) return tl::unexpected(mark.error());
-    return {};
-  }
-  if (path_exists(spool_.done_job(id))) {
-    return tl::unexpected(
-        fault(FaultKind::kBadInput, fmt::format("job {} is done: too late to cancel it", id)));
-  }
-  return tl::unexpected(unknown_job(where(), id));
+  const Result<bool> asked = ask_cancel(spool_, id, where());
+  if (!asked) return tl::unexpected(asked.error());
+  if (*asked) return {};
+  return spool_.remove(spool_.held(id));
 }
 
 Result<DeviceStatus> SpoolBackend::device() {

@@ -16,10 +16,7 @@
 #include <utility>
 
 #include "transport/backend.h"
-#include "transport/held_job.h"
-#include "transport/job_file.h"
-#include "transport/journal.h"
-#include "transport/spool.h"
+#include "transport/spooled_job.h"
 #include "transport/usb_job.h"
 
 namespace binderjet {
@@ -62,7 +59,6 @@ class UsbBackend : public Backend {
   Result<std::unique_ptr<UsbJob>> connect(const UsbUri& uri, const std::string& text,
                                           UsbSession::Check check, UsbJob::Keep keep);
   Result<void> connect_for_job(const UsbUri& uri, const std::string& text);
-  Result<void> open_job(const std::string& id, const JobTicket& ticket, std::uint64_t number);
   Result<void> check_wanted();
   Result<void> make_way(std::uint64_t number);
   Result<std::string> cancelled_folder() const;
@@ -75,20 +71,17 @@ class UsbBackend : public Backend {
   UsbUri uri_;
   BackendOptions options_;
   Spool store_;
-  std::string id_;  // of the job being sent, or empty
-  int layer_count_ = 0;
-  int next_ = 0;
+  std::optional<SpooledJob> job_;  // that is being sent
   bool cancelled_ = false;
-  std::optional<JobWriter> writer_;  // the header
-  std::optional<Journal> journal_;
-  std::unique_ptr<UsbJob> job_;
+  std::unique_ptr<UsbJob> there_;  // the same, at the printer
 };
 
 // Somebody wants the job to stop: a mark in its folder, or a signal to this process.
 Result<void> UsbBackend::check_wanted() {
-  if (!id_.empty() && path_exists(store_.incoming(id_) + "/cancel")) {
+  if (job_ && cancel_asked(store_, *job_)) {
     cancelled_ = true;
-    return tl::unexpected(fault(FaultKind::kInterrupted, fmt::format("job {} was cancelled", id_)));
+    return tl::unexpected(
+        fault(FaultKind::kInterrupted, fmt::format("job {} was cancelled", job_->id)));
   }
   if (options_.stop_asked && options_.stop_asked()) {
     return tl::unexpected(fault(FaultKind::kInterrupted, "interrupted"));
@@ -111,36 +104,29 @@ Result<void> UsbBackend::connect_for_job(const UsbUri& uri, const std::string& t
   auto job = connect(
       uri, text, [this] { return check_wanted(); },
       [this](int layers, std::uint64_t digest) {
-        return journal_ ? journal_->acknowledge(layers, 0, digest) : Result<void>();
+        return job_ ? job_->journal.acknowledge(layers, 0, digest) : Result<void>();
       });
   if (!job) return tl::unexpected(job.error());
-  job_ = std::move(*job);
-  const auto welcome = job_->greet();
+  there_ = std::move(*job);
+  const auto welcome = there_->greet();
   if (welcome) return {};
-  job_.reset();
+  there_.reset();
   return tl::unexpected(welcome.error());
 }
 
 void UsbBackend::stop(const std::string& reason) {
-  job_.reset();
-  if (id_.empty()) return;
-  const Result<File> lock = store_.lock();
-  // A full disk may refuse the line; the folder's place says the same.
-  if (journal_) static_cast<void>(journal_->held(reason));
-  if (lock) static_cast<void>(store_.hold(id_));
-  id_.clear();
-  writer_.reset();
-  journal_.reset();
+  there_.reset();
+  if (job_) hold_job(store_, *std::exchange(job_, std::nullopt), reason);
 }
 
 // A job that somebody cancelled is removed by its sender, who alone knows that nobody writes to it.
 void UsbBackend::forget_cancelled() {
-  const std::uint64_t number = journal_ ? journal_->state().key : 0;
-  const std::string id = std::exchange(id_, "");  // check_wanted() no longer looks
+  const SpooledJob job = *std::exchange(job_, std::nullopt);  // check_wanted() no longer looks
+  const std::uint64_t number = job.journal.state().key;
   cancelled_ = false;
   bool told = false;
-  if (job_) told = job_->cancel(number, Clock::now() + kCancelTime).has_value();
-  job_.reset();
+  if (there_) told = there_->cancel(number, Clock::now() + kCancelTime).has_value();
+  there_.reset();
   if (const Result<File> lock = store_.lock()) {
     if (!told) {
       if (const auto folder = cancelled_folder()) {
@@ -148,16 +134,14 @@ void UsbBackend::forget_cancelled() {
             open_file(fmt::format("{}/{:016x}", *folder, number), O_WRONLY | O_CREAT));
       }
     }
-    static_cast<void>(store_.remove(store_.incoming(id)));
+    static_cast<void>(store_.remove(store_.incoming(job.id)));
   }
-  writer_.reset();
-  journal_.reset();
 }
 
 tl::unexpected<Fault> UsbBackend::stopped(Fault fault) {
-  const int layer = job_ ? job_->acknowledged() : next_;
+  const int layer = there_ ? there_->acknowledged() : job_->next;
   fault.where = fmt::format("{}: layer {} of {}", fault.where.empty() ? text_ : fault.where, layer,
-                            layer_count_);
+                            job_->layer_count());
   if (cancelled_) {
     forget_cancelled();
   } else {
@@ -177,7 +161,7 @@ Result<std::string> UsbBackend::cancelled_folder() const {
 Result<void> UsbBackend::make_way(std::uint64_t number) {
   const std::string mark = fmt::format("{}/cancelled/{:016x}", store_.folder(), number);
   if (path_exists(mark)) {
-    auto done = job_->cancel(number, Clock::now() + uri_.patience);
+    auto done = there_->cancel(number, Clock::now() + uri_.patience);
     if (done) unlink(mark.c_str());
     return done;
   }
@@ -198,29 +182,6 @@ Result<void> UsbBackend::make_way(std::uint64_t number) {
                                             number, text_)));
 }
 
-Result<void> UsbBackend::open_job(const std::string& id, const JobTicket& ticket,
-                                  std::uint64_t number) {
-  const std::string folder = store_.incoming(id);
-  if (auto done = make_folder(folder); !done) return done;
-  Result<JobWriter> writer =
-      JobWriter::create_kept(folder + "/job.part", store_.done_job(id), ticket.header);
-  if (!writer) return tl::unexpected(writer.error());
-  if (auto done = writer->sync(); !done) return done;
-  JournalState state;
-  state.layer_count = ticket.layer_count;
-  state.name = ticket.name;
-  state.source = ticket.source;
-  state.to = job_->printer().uri;
-  state.key = number;
-  Result<Journal> journal = Journal::create(folder + "/journal", state);
-  if (!journal) return tl::unexpected(journal.error());
-  if (auto done = sync_folder(folder); !done) return done;
-  if (auto done = sync_folder(folder_of(folder)); !done) return done;
-  writer_ = std::move(*writer);
-  journal_ = std::move(*journal);
-  return {};
-}
-
 Result<std::string> UsbBackend::start(const JobTicket& ticket) {
   // First the printer: a job for a printer that is not there shall not be left behind.
   if (auto done = connect_for_job(uri_, text_); !done) return tl::unexpected(done.error());
@@ -231,33 +192,25 @@ Result<std::string> UsbBackend::start(const JobTicket& ticket) {
       return tl::unexpected(fault(FaultKind::kDevice, "the system gives no random numbers"));
     }
   }
-  Result<std::string> id = "";
   {
     const Result<File> lock = store_.lock();
     if (!lock) return tl::unexpected(lock.error());
-    id = store_.new_id(*lock);
-    if (!id) return id;
-    if (auto done = open_job(*id, ticket, number); !done) {
-      static_cast<void>(store_.remove(store_.incoming(*id)));
-      return tl::unexpected(done.error());
-    }
+    Result<SpooledJob> job = start_job(store_, *lock, ticket, {there_->printer().uri, number});
+    if (!job) return tl::unexpected(job.error());
+    job_ = *std::move(job);
   }
-  id_ = *id;
-  layer_count_ = ticket.layer_count;
-  next_ = 0;
-  Result<void> started = job_->start(number, ticket.layer_count, ticket.header);
-  if (!started && job_->in_the_way() != 0 && job_->in_the_way() != number) {
+  const std::string id = job_->id;
+  Result<void> started = there_->start(number, ticket.layer_count, ticket.header);
+  if (!started && there_->in_the_way() != 0 && there_->in_the_way() != number) {
     // Until the way is free the job has not begun: nothing of it is kept.
-    started = make_way(job_->in_the_way());
-    if (started) started = job_->start(number, ticket.layer_count, ticket.header);
+    started = make_way(there_->in_the_way());
+    if (started) started = there_->start(number, ticket.layer_count, ticket.header);
     if (!started) {
       const Fault why = started.error();
       const Result<File> lock = store_.lock();
-      id_.clear();
-      writer_.reset();
-      journal_.reset();
       job_.reset();
-      if (lock) static_cast<void>(store_.remove(store_.incoming(*id)));
+      there_.reset();
+      if (lock) static_cast<void>(store_.remove(store_.incoming(id)));
       return tl::unexpected(why);
     }
   }
@@ -269,69 +222,38 @@ Result<int> UsbBackend::resume(const std::string& id, const JobTicket& ticket) {
   {
     const Result<File> lock = store_.lock();
     if (!lock) return tl::unexpected(lock.error());
-    Result<HeldJob> held = open_held_job(store_, id, ticket, text_);
-    if (!held) return tl::unexpected(held.error());
-    if (held->journal.state().key == 0) {
-      return tl::unexpected(
-          cannot_resume(text_, id, "has a damaged journal: cancel it and print again"));
-    }
-    Result<JobWriter> writer = JobWriter::reopen_kept(
-        held->part, store_.done_job(id), job_format::kPreambleBytes + ticket.header.size());
-    if (!writer) return tl::unexpected(writer.error());
-    if (auto done = take_up(store_, *held, *writer); !done) return tl::unexpected(done.error());
-    writer_ = std::move(*writer);
-    journal_ = std::move(held->journal);
-    id_ = id;
+    Result<SpooledJob> job = resume_job(store_, id, ticket, text_);
+    if (!job) return tl::unexpected(job.error());
+    job_ = *std::move(job);
   }
-  const JournalState state = journal_->state();
-  layer_count_ = state.layer_count;
-  next_ = state.acknowledged;
+  const JournalState state = job_->journal.state();
   // The same printer, whatever else is plugged in by now.
   Result<UsbUri> same = parse_usb_uri(state.to);
   if (!same) return stopped(same.error());
   same->patience = uri_.patience;
   if (auto done = connect_for_job(*same, state.to); !done) return stopped(done.error());
   Result<int> first =
-      job_->resume(state.key, state.layer_count, ticket.header, state.acknowledged, state.digest);
+      there_->resume(state.key, state.layer_count, ticket.header, state.acknowledged, state.digest);
   if (!first) return stopped(first.error());
-  next_ = *first;
+  job_->next = *first;
   return first;
 }
 
 Result<int> UsbBackend::send(int layer, std::span<const std::byte> records) {
-  if (id_.empty()) return tl::unexpected(fault(FaultKind::kBadInput, "no job was started"));
-  if (layer != next_ || layer >= layer_count_) {
-    return stopped(fault(
-        FaultKind::kBadInput,
-        fmt::format("layer {} came where layer {} of {} was due", layer, next_, layer_count_)));
-  }
+  if (!job_) return tl::unexpected(fault(FaultKind::kBadInput, "no job was started"));
+  if (auto due = check_next(*job_, layer, text_); !due) return stopped(due.error());
   if (auto wanted = check_wanted(); !wanted) return stopped(wanted.error());
-  ++next_;
-  if (auto done = job_->send(layer, records); !done) return stopped(done.error());
-  return job_->acknowledged();
+  ++job_->next;
+  if (auto done = there_->send(layer, records); !done) return stopped(done.error());
+  return there_->acknowledged();
 }
 
 Result<void> UsbBackend::end() {
-  if (id_.empty()) return tl::unexpected(fault(FaultKind::kBadInput, "no job was started"));
-  if (next_ != layer_count_) {
-    return stopped(fault(FaultKind::kBadInput,
-                         fmt::format("the job ended before layer {} of {}", next_, layer_count_)));
-  }
-  if (auto done = job_->end(); !done) return stopped(done.error());
-  job_.reset();
-  const Result<File> lock = store_.lock();
-  if (!lock) return tl::unexpected(lock.error());
-  auto done = writer_->finish();
-  if (done || path_exists(store_.done_job(id_))) {
-    static_cast<void>(store_.file_away(id_));
-  } else {
-    static_cast<void>(journal_->held(done.error().what));
-    static_cast<void>(store_.hold(id_));
-  }
-  id_.clear();
-  writer_.reset();
-  journal_.reset();
-  return done;
+  if (!job_) return tl::unexpected(fault(FaultKind::kBadInput, "no job was started"));
+  if (auto whole = check_all_came(*job_, text_); !whole) return stopped(whole.error());
+  if (auto done = there_->end(); !done) return stopped(done.error());
+  there_.reset();
+  return finish_job(store_, *std::exchange(job_, std::nullopt));
 }
 
 Result<std::vector<JobStatus>> UsbBackend::status() {
@@ -352,17 +274,9 @@ Result<void> UsbBackend::cancel(const std::string& id) {
     if (!path_exists(store_.folder())) return tl::unexpected(unknown_job(text_, id));
     const Result<File> lock = store_.lock();
     if (!lock) return tl::unexpected(lock.error());
-    if (!is_job_id(id)) return tl::unexpected(unknown_job(text_, id));
-    if (path_exists(store_.incoming(id))) {
-      const Result<File> mark = open_file(store_.incoming(id) + "/cancel", O_WRONLY | O_CREAT);
-      if (!mark) return tl::unexpected(mark.error());
-      return {};
-    }
-    if (path_exists(store_.done_job(id))) {
-      return tl::unexpected(
-          fault(FaultKind::kBadInput, fmt::format("job {} is done: too late to cancel it", id)));
-    }
-    if (!path_exists(store_.held(id))) return tl::unexpected(unknown_job(text_, id));
+    const Result<bool> asked = ask_cancel(store_, id, text_);
+    if (!asked) return tl::unexpected(asked.error());
+    if (*asked) return {};
     if (const auto journal = Journal::peek(store_.held(id) + "/journal")) {
       number = journal->key;
       if (const auto same = parse_usb_uri(journal->to)) {
