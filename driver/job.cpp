@@ -100,11 +100,10 @@ std::unique_ptr<Stream<MaskLayer>> mask_stream(const JobHeader& header,
     if (!header.robust) window.resize(1, window.front());
     auto solver =
         std::make_shared<const InverseSolver>(std::move(window), header.grid, header.profile.mask);
-    return inverse_masks(std::move(mesh), header.grid, header.box, layers, std::move(solver));
+    return inverse_masks(std::move(mesh), header.grid, header.box, layers, solver);
   }
   auto model = std::make_shared<const PrinterModel>(header.profile.effects, header.grid, place);
-  return paper_masks(std::move(mesh), header.grid, header.box, layers, std::move(model),
-                     header.passes);
+  return paper_masks(std::move(mesh), header.grid, header.box, layers, model, header.passes);
 }
 
 JobHeader parse_job_header(const std::string& text, const std::string& where) {

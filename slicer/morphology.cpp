@@ -27,24 +27,39 @@ void grown(rows::Row row, int by, int width, std::vector<int>& out) {
   }
 }
 
+// A row that the ellipsoid reaches from its centre, and how far it goes there to either side.
+struct Neighbour {
+  int dy;
+  int dz;
+  int half;
+};
+
+std::vector<Neighbour> neighbours(const Ellipsoid& by) {
+  const auto [rx, ry, rz] = by.reach();
+  std::vector<Neighbour> out;
+  for (int dz = -rz; dz <= rz; ++dz) {
+    for (int dy = -ry; dy <= ry; ++dy) {
+      const int half = by.half_width(dy, dz);
+      if (half >= 0) out.push_back({dy, dz, half});
+    }
+  }
+  return out;
+}
+
 // The middle layer, each of whose rows takes in every row that the ellipsoid reaches from it:
 // `take`(row so far, layer or null where there is none, y, half width of the ellipsoid there).
 template <class Take>
 RunLayer over_neighbours(std::span<const RunLayer* const> window, const Ellipsoid& by,
                          const Take& take) {
-  const auto [rx, ry, rz] = by.reach();
+  const std::vector<Neighbour> reached = neighbours(by);
+  const int middle_z = static_cast<int>(window.size() / 2);
   const RunLayer& middle = *window[window.size() / 2];
   RunLayer out(middle.width());
   std::vector<int> runs;
   for (int y = 0; y < middle.height(); ++y) {
     runs.assign(middle.row(y).begin(), middle.row(y).end());
-    for (int dz = -rz; dz <= rz; ++dz) {
-      const RunLayer* layer = window[static_cast<std::size_t>(dz + rz)];
-      for (int dy = -ry; dy <= ry; ++dy) {
-        const int half = by.half_width(dy, dz);
-        if (half >= 0) take(runs, layer, y + dy, half);
-      }
-    }
+    for (const auto& [dy, dz, half] : reached)
+      take(runs, window[static_cast<std::size_t>(middle_z + dz)], y + dy, half);
     out.append_row(runs);
   }
   return out;

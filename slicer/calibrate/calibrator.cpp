@@ -166,7 +166,7 @@ bool Calibrator::take_best(std::vector<Fitted> fitted) {
   }
   const Candidate& candidate = fitted[best].candidate;
   Model model = with_places_fitted(job_, fitted[best].model, candidate.effect, seen_);
-  model = refit_with_taken(std::move(model), candidate.effect, kLastRounds);
+  model = refit_with_taken(model, candidate.effect, kLastRounds);
   const Errors errors = errors_of(model);
   step_(fmt::format("{}: printed error {:.5f} to {:.5f} on layers not seen", candidate.kind,
                     errors_.held, errors.held));

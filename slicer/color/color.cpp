@@ -10,8 +10,7 @@ namespace binderjet {
 std::shared_ptr<const ColorField> paint_field(Paint paint, const ColorSettings& settings,
                                               std::vector<std::string>& warnings) {
   if (!paint.samples.empty()) {
-    return sample_field(std::move(paint.samples), std::move(paint.sample_colors),
-                        settings.neighbors);
+    return sample_field(paint.samples, std::move(paint.sample_colors), settings.neighbors);
   }
   const bool white = paint.corners.empty();
   if (white && paint.has_loose_uvs()) {

@@ -205,8 +205,8 @@ std::shared_ptr<const ColorField> crease_field(std::shared_ptr<const ColorField>
   std::vector<Point> points;
   points.reserve(samples.places.size());
   for (const Place& p : samples.places) points.push_back({p.x(), p.y(), p.z()});
-  return std::make_shared<CreaseField>(
-      std::move(base), sample_field(std::move(points), std::move(shades), settings.neighbors));
+  return std::make_shared<CreaseField>(std::move(base),
+                                       sample_field(points, std::move(shades), settings.neighbors));
 }
 
 }  // namespace binderjet

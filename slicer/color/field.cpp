@@ -143,9 +143,9 @@ class BedField : public ColorField {
 
 }  // namespace
 
-std::shared_ptr<const ColorField> sample_field(std::vector<Point> samples, std::vector<Rgb> colors,
-                                               int neighbors) {
-  return std::make_shared<SampleField>(std::move(samples), std::move(colors), neighbors);
+std::shared_ptr<const ColorField> sample_field(const std::vector<Point>& samples,
+                                               std::vector<Rgb> colors, int neighbors) {
+  return std::make_shared<SampleField>(samples, std::move(colors), neighbors);
 }
 
 std::shared_ptr<const ColorField> plain_field(Rgb color) {

@@ -30,8 +30,8 @@ class ColorField {
 
 // The `neighbors` nearest samples weighted by the inverse of their distance (paper, 4.4); a sample
 // at the point itself decides alone. At least one sample.
-std::shared_ptr<const ColorField> sample_field(std::vector<Point> samples, std::vector<Rgb> colors,
-                                               int neighbors);
+std::shared_ptr<const ColorField> sample_field(const std::vector<Point>& samples,
+                                               std::vector<Rgb> colors, int neighbors);
 
 // The color of the nearest point of painted triangles. The limit of the paper's samples as they
 // become dense, without their memory: 190 mm of surface would need hundreds of millions.

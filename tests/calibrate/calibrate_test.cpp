@@ -20,10 +20,6 @@ namespace {
 
 using hidden::Printer;
 
-const std::vector<EffectSpec> kDeclared = {
-    {"spread", {{"shape", "box"}}, {{"width_mm", {0.7, 0.3}}}},
-    {"threshold", {}, {{"level", {0.5}}}}};
-
 Printer printer_named(const std::vector<Printer>& printers, const std::string& name) {
   return *std::find_if(printers.begin(), printers.end(),
                        [&](const Printer& printer) { return printer.name == name; });
@@ -35,7 +31,7 @@ Calibration calibrated(const Printer& printer, std::array<double, 3> size_mm = {
   hidden::print(printer, a, 2);
   MeasuredJob b = hidden::part("b", {6, 7, 1.5}, 1);
   hidden::print(printer, b, 3);
-  return calibrate(a, {b}, kDeclared, {}, [](const std::string&) {});
+  return calibrate(a, {b}, hidden::declared(), {}, [](const std::string&) {});
 }
 
 TEST(Calibrate, ClaimsNothingOfAPrinterThatIsAsDeclared) {
@@ -83,9 +79,9 @@ std::int64_t difference(const std::vector<Shared<RunLayer>>& a,
 // How far a level of 0.4 and a fourth of the binder wicking up at a level of 0.5 are apart. Below a
 // straight wall there is as much binder as in it, and 0.5 / (1 + 1/4) is 0.4.
 std::int64_t level_against_wicking(const MeasuredJob& job) {
-  std::vector<EffectSpec> level = kDeclared;
+  std::vector<EffectSpec> level = hidden::declared();
   level[1].numbers["level"] = {0.4};
-  std::vector<EffectSpec> wicking = kDeclared;
+  std::vector<EffectSpec> wicking = hidden::declared();
   wicking.push_back({"z_wick_up", {}, {{"share", {0.25}}}});
   const LayerChoice all(job.masks.size(), true);
   return difference(print_layers(job, level, all), print_layers(job, wicking, all));
@@ -109,7 +105,7 @@ TEST(Calibrate, NamesTheRivalsThatStraightWallsCannotTellApart) {
   ASSERT_LT(level_against_wicking(block), difference(block.prints[0], block.prints[1]))
       << "the two must be closer than two prints";
 
-  const Calibration found = calibrate(block, {}, kDeclared, {}, [](const std::string&) {});
+  const Calibration found = calibrate(block, {}, hidden::declared(), {}, [](const std::string&) {});
   ASSERT_EQ(found.effects.size(), 1U);
   std::vector<std::string> named = found.effects[0].rivals;
   named.push_back(found.effects[0].kind);
@@ -192,7 +188,7 @@ TEST(Calibrate, LeavesUnexplainedWhatTwoPrintsShareAndNoCovariateTells) {
   hidden::print({}, a, 1);
   hidden::print({}, a, 2);
   for (auto& print : a.prints) strew_pits(print, 1);
-  const Calibration found = calibrate(a, {}, kDeclared, {}, [](const std::string&) {});
+  const Calibration found = calibrate(a, {}, hidden::declared(), {}, [](const std::string&) {});
   EXPECT_TRUE(found.effects.empty()) << found.effects.front().kind;
   EXPECT_EQ(found.verdict, "unexplained");
 }
@@ -216,7 +212,7 @@ Calibration calibrated_without_layer_7(const std::function<int(int)>& step_of) {
   for (std::size_t k = 7; k + 1 < print.size(); ++k) print[k] = print[k + 1];
   print.back() = std::make_shared<const RunLayer>(
       RunLayer::powder(print.back()->width(), print.back()->height()));
-  return calibrate(a, {}, kDeclared, {}, [](const std::string&) {});
+  return calibrate(a, {}, hidden::declared(), {}, [](const std::string&) {});
 }
 
 TEST(Calibrate, FindsALostLayerThatNoRegressionSees) {

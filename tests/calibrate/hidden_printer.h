@@ -44,6 +44,9 @@ struct Printer {
   double noise_mm = 0.05;  // its correlation
 };
 
+// What the maker of a Printer declares, who knows of its spread and its level alone.
+std::vector<EffectSpec> declared();
+
 // A dense stack of masks; layers are of grid.pitch_mm.
 using Solid = std::function<bool(double x, double y, double z)>;
 

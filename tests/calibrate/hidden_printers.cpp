@@ -21,6 +21,11 @@ Printer named(const std::string& name, std::vector<std::string> kinds,
 
 }  // namespace
 
+std::vector<EffectSpec> declared() {
+  return {{"spread", {{"shape", "box"}}, {{"width_mm", {0.7, 0.3}}}},
+          {"threshold", {}, {{"level", {0.5}}}}};
+}
+
 std::vector<Printer> catalogue(double s) {
   std::vector<Printer> out;
   const auto add = [&](const std::string& name, std::vector<std::string> kinds,

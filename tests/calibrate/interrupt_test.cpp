@@ -18,10 +18,6 @@
 namespace binderjet {
 namespace {
 
-const std::vector<EffectSpec> kDeclared = {
-    {"spread", {{"shape", "box"}}, {{"width_mm", {0.7, 0.3}}}},
-    {"threshold", {}, {{"level", {0.5}}}}};
-
 MeasuredJob printed_job() {
   hidden::Printer printer;
   printer.bleed_down = 0.2;
@@ -59,7 +55,7 @@ TEST(Interrupt, IsAskedForWithinASecondOfComputingThroughoutACalibration) {
     longest = std::max(longest, now - last);
     last = now;
   };
-  calibrate(job, {}, kDeclared, {}, [](const std::string&) {});
+  calibrate(job, {}, hidden::declared(), {}, [](const std::string&) {});
   EXPECT_LT(static_cast<double>(longest) / CLOCKS_PER_SEC, 1);
 }
 
@@ -70,7 +66,8 @@ TEST(Interrupt, EndsACalibrationFromWhereverItIsAsked) {
     job.on_check = [&] {
       if (--left <= 0) throw Error(ErrorKind::kInterrupted, "", "enough");
     };
-    EXPECT_THROW(calibrate(job, {}, kDeclared, {}, [](const std::string&) {}), Error) << calls;
+    EXPECT_THROW(calibrate(job, {}, hidden::declared(), {}, [](const std::string&) {}), Error)
+        << calls;
   }
 }
 

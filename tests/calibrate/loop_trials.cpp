@@ -16,9 +16,6 @@ namespace {
 using namespace binderjet;
 using namespace binderjet::hidden;
 
-const std::vector<EffectSpec> kDeclared = {
-    {"spread", {{"shape", "box"}}, {{"width_mm", {0.7, 0.3}}}},
-    {"threshold", {}, {{"level", {0.5}}}}};
 const MaskRules kRules{4, 4};
 constexpr double kCouponScale = 0.6;
 
@@ -29,7 +26,7 @@ struct Tally {
 };
 
 void run(const Printer& printer, const Wanted& coupon, const Wanted& wanted, Tally& tally) {
-  const Loop loop = close_loop(printer, coupon, wanted, kDeclared, kRules);
+  const Loop loop = close_loop(printer, coupon, wanted, declared(), kRules);
   std::string effects;
   for (const FoundEffect& effect : loop.found.effects) {
     effects += " " + effect.kind;

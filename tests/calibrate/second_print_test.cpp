@@ -13,14 +13,11 @@ namespace binderjet {
 namespace {
 
 TEST(SecondPrint, IsNearestToTheModelWithInverseMasks) {
-  const std::vector<EffectSpec> declared = {
-      {"spread", {{"shape", "box"}}, {{"width_mm", {0.7, 0.3}}}},
-      {"threshold", {}, {{"level", {0.5}}}}};
   const auto printers = hidden::catalogue(1);
   const auto printer = std::find_if(printers.begin(), printers.end(),
                                     [](const auto& p) { return p.name == "layer_shift_low"; });
   const hidden::Wanted part = hidden::scaled(coupon("full"), 0.3);
-  const hidden::Loop loop = hidden::close_loop(*printer, part, part, declared, {4, 4});
+  const hidden::Loop loop = hidden::close_loop(*printer, part, part, hidden::declared(), {4, 4});
   const auto excess = [&](const std::string& enhance) {
     return loop.second.at(enhance).voxels.excess();
   };

@@ -15,10 +15,6 @@ namespace {
 using namespace binderjet;
 using namespace binderjet::hidden;
 
-const std::vector<EffectSpec> kDeclared = {
-    {"spread", {{"shape", "box"}}, {{"width_mm", {0.7, 0.3}}}},
-    {"threshold", {}, {{"level", {0.5}}}}};
-
 struct Tally {
   int right = 0;
   int total = 0;
@@ -59,7 +55,7 @@ void run(const Printer& printer, bool small, unsigned seed, Tally& tally) {
     solid += b.prints[0][k]->count();
   }
   const auto start = std::chrono::steady_clock::now();
-  const Calibration found = calibrate(a, {b}, kDeclared, {}, [](const std::string& what) {
+  const Calibration found = calibrate(a, {b}, declared(), {}, [](const std::string& what) {
     if (std::getenv("BINDERJET_TALK") != nullptr) fmt::print("    {}\n", what);
   });
   const double seconds =
