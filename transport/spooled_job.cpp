@@ -108,7 +108,7 @@ Result<void> check_all_came(const SpooledJob& job, const std::string& where) {
 Result<void> finish_job(const Spool& spool, SpooledJob job) {
   const Result<File> lock = spool.lock();
   if (!lock) return tl::unexpected(lock.error());
-  const Result<void> done = job.writer.finish();
+  Result<void> done = job.writer.finish();
   if (done) {
     // The job is there; what is left of its folder the next process can put in order as well.
     static_cast<void>(spool.file_away(job.id));
