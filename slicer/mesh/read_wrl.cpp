@@ -5,18 +5,25 @@
 #include <Inventor/SoInput.h>
 #include <Inventor/SoPrimitiveVertex.h>
 #include <Inventor/VRMLnodes/SoVRMLAppearance.h>
+#include <Inventor/VRMLnodes/SoVRMLColor.h>
 #include <Inventor/VRMLnodes/SoVRMLCoordinate.h>
+#include <Inventor/VRMLnodes/SoVRMLFontStyle.h>
 #include <Inventor/VRMLnodes/SoVRMLImageTexture.h>
 #include <Inventor/VRMLnodes/SoVRMLIndexedShape.h>
 #include <Inventor/VRMLnodes/SoVRMLInline.h>
+#include <Inventor/VRMLnodes/SoVRMLNormal.h>
 #include <Inventor/VRMLnodes/SoVRMLShape.h>
+#include <Inventor/VRMLnodes/SoVRMLTextureCoordinate.h>
 #include <Inventor/actions/SoCallbackAction.h>
 #include <Inventor/errors/SoDebugError.h>
 #include <Inventor/errors/SoReadError.h>
+#include <Inventor/fields/SoSFNode.h>
+#include <Inventor/lists/SoFieldList.h>
 #include <Inventor/nodes/SoIndexedShape.h>
 #include <Inventor/nodes/SoSeparator.h>
 #include <Inventor/nodes/SoShape.h>
 #include <Inventor/nodes/SoTexture2.h>
+#include <Inventor/nodes/SoVertexProperty.h>
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -76,8 +83,8 @@ class SceneReader {
  public:
   explicit SceneReader(const std::string& path) : path_(path) {}
 
-  // True once a face has named a point that is not there.
-  bool lacks_points() const { return lacks_points_; }
+  // What Coin would not have survived, or empty; nothing was read behind it.
+  const std::string& broken() const { return broken_; }
 
   MeshFile read(SoNode& root) {
     SoCallbackAction action;
@@ -101,10 +108,10 @@ class SceneReader {
     SceneReader& reader = self(data);
     reader.image_ = -1;
     reader.missing_ = false;
+    reader.broken_ = misplaced(*node);
+    if (!reader.broken_.empty()) return SoCallbackAction::ABORT;
     const SoNode* look = shape->appearance.getValue();
-    if (look == nullptr || !look->isOfType(SoVRMLAppearance::getClassTypeId())) {
-      return SoCallbackAction::CONTINUE;
-    }
+    if (look == nullptr) return SoCallbackAction::CONTINUE;
     const SoNode* texture = static_cast<const SoVRMLAppearance*>(look)->texture.getValue();
     if (texture != nullptr && texture->isOfType(SoVRMLImageTexture::getClassTypeId())) {
       const auto* image = static_cast<const SoVRMLImageTexture*>(texture);
@@ -115,6 +122,34 @@ class SceneReader {
                               image->repeatT.getValue() != 0 ? Tiling::kRepeat : Tiling::kClamp});
     }
     return SoCallbackAction::CONTINUE;
+  }
+
+  // Coin takes a node for the kind that belongs into its field, whatever stands there.
+  static std::string misplaced(const SoNode& node) {
+    static const std::map<std::string, SoType> kinds = {
+        {"appearance", SoVRMLAppearance::getClassTypeId()},
+        {"color", SoVRMLColor::getClassTypeId()},
+        {"coord", SoVRMLCoordinate::getClassTypeId()},
+        {"fontStyle", SoVRMLFontStyle::getClassTypeId()},
+        {"normal", SoVRMLNormal::getClassTypeId()},
+        {"texCoord", SoVRMLTextureCoordinate::getClassTypeId()},
+        {"vertexProperty", SoVertexProperty::getClassTypeId()}};
+    SoFieldList fields;
+    node.getFields(fields);
+    for (int i = 0; i < fields.getLength(); ++i) {
+      SbName name;
+      if (!fields[i]->isOfType(SoSFNode::getClassTypeId()) || !node.getFieldName(fields[i], name)) {
+        continue;
+      }
+      const SoNode* held = static_cast<const SoSFNode*>(fields[i])->getValue();
+      const auto kind = kinds.find(name.getString());
+      if (held != nullptr && kind != kinds.end() && !held->isOfType(kind->second)) {
+        return fmt::format("has a {} as the {} of a {}, where another kind of node belongs",
+                           held->getTypeId().getName().getString(), name.getString(),
+                           node.getTypeId().getName().getString());
+      }
+    }
+    return "";
   }
 
   // Coin reads the points that a face names without asking whether they are there.
@@ -142,8 +177,10 @@ class SceneReader {
   static SoCallbackAction::Response enter_old_shape(void* data, SoCallbackAction* action,
                                                     const SoNode* node) {
     SceneReader& reader = self(data);
+    reader.broken_ = misplaced(*node);
+    if (!reader.broken_.empty()) return SoCallbackAction::ABORT;
     if (!has_its_points(*action, *node)) {
-      reader.lacks_points_ = true;
+      reader.broken_ = "has a face that names a point that is not there";
       return SoCallbackAction::ABORT;
     }
     const SbMatrix& matrix = action->getModelMatrix();
@@ -257,7 +294,7 @@ class SceneReader {
   std::map<std::string, int> images_;  // by the first name; -1 is not there
   std::array<std::array<double, 4>, 4> matrix_{};
   bool mirrored_ = false;
-  bool lacks_points_ = false;
+  std::string broken_;
   int image_ = -1;  // of the shape being read
   bool missing_ = false;
   std::vector<std::pair<int, bool>> outer_;
@@ -328,9 +365,8 @@ MeshFile read_wrl(InputFile& file, const std::string& path) {
   SceneReader reader(path);
   MeshFile result = reader.read(*root);
   root->unref();
-  if (reader.lacks_points()) {
-    throw Error(ErrorKind::kBadInput, name,
-                "has a face that names a point that is not there; export the model again");
+  if (!reader.broken().empty()) {
+    throw Error(ErrorKind::kBadInput, name, reader.broken() + "; export the model again");
   }
   if (!fault.empty()) result.warnings.push_back("was read with a fault: " + fault);
   return result;

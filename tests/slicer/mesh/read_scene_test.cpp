@@ -156,6 +156,21 @@ TEST(ReadVrml, RefusesAFaceWhosePointIsNotThere) {
               HasSubstr("a point that is not there"));
 }
 
+TEST(ReadVrml, RefusesANodeWhereAnotherKindBelongs) {
+  const std::string faces =
+      "IndexedFaceSet { coord Coordinate { point [0 0 0, 1 0 0, 0 1 0] } coordIndex [0 1 2 -1] ";
+  for (const std::string& shape :
+       {"appearance " + faces + "}", "geometry " + faces + "normal Material { } }",
+        "geometry " + faces + "color Group { } }",
+        std::string("geometry PointSet { coord Box { } }"),
+        std::string("geometry ElevationGrid { xDimension 2 zDimension 2 height [0 1 0 1] "
+                    "texCoord Material { } }")}) {
+    EXPECT_THAT(error_of([&] { read("a.wrl", "#VRML V2.0 utf8\nShape { " + shape + " }"); }),
+                HasSubstr("where another kind of node belongs"))
+        << shape;
+  }
+}
+
 // Assimp's OBJ reader crashes on files that ours refuses.
 TEST(ReadGltf, LeavesToAssimpNothingThatWeReadOurselves) {
   EXPECT_THAT(error_of([] { read("a.obj", "glTF\nv 0 0 0\n"); }), HasSubstr("no known format"));
