@@ -4,10 +4,12 @@
 #include <gtest/gtest.h>
 
 #include <fstream>
+#include <map>
 
 #include "driver/profile.h"
 #include "driver/write_profile.h"
 #include "slicer/error.h"
+#include "tests/support/caliper_readings.h"
 #include "tests/support/markup.h"
 #include "tests/support/program.h"
 
@@ -51,6 +53,34 @@ TEST_F(CalibrateGauges, WriteTheProfileTheVerdictAndThePage) {
     EXPECT_EQ(made.effects[i].numbers, kept.effects[i].numbers)
         << "profiles/z450-fig3.toml is this";
   }
+}
+
+TEST_F(CalibrateGauges, TakeCaliperReadingsToo) {
+  MeasuredBlocks blocks;
+  blocks.slip_y_mm = 0.2;
+  blocks.column_mm = 0.15;
+  write_readings(here_ / "lengths.csv", blocks, 1);
+  const Ran ran = calibrate(here_ / "lengths.csv");
+  ASSERT_EQ(ran.status, 0) << ran.err;
+  const auto json = ran.json();
+  EXPECT_EQ(json, nlohmann::json::parse(here_.text("out/calibration.json")));
+  EXPECT_EQ(json["verdict"], "effect");
+  EXPECT_EQ(json["rows"], 96);
+  std::map<std::string, nlohmann::json> effects;
+  for (const auto& effect : json["effects"]) effects[effect["kind"]] = effect;
+  ASSERT_THAT(effects, testing::SizeIs(3));
+  EXPECT_THAT(effects, testing::Contains(testing::Key("threshold")));
+  EXPECT_EQ(effects["layer_shift_low"]["covariate"]["axis"], "layer");
+  EXPECT_EQ(effects["grad_bed"]["covariate"]["axis"], "position");
+  EXPECT_LT(effects["grad_bed"]["p"], 0.05);
+  EXPECT_LT(json["after"]["rms_mm"], 0.2 * json["before"]["rms_mm"].get<double>());
+  const std::string page = here_.text("out/report.html");
+  EXPECT_EQ(markup_fault(page), "");
+  EXPECT_THAT(page, HasSubstr("Layer shift"));
+
+  const Ran told = here_.run(
+      {"calibrate", "-p", "z450", "--gauges", here_ / "lengths.csv", "-o", here_ / "told"});
+  EXPECT_THAT(told.out, HasSubstr("growth is an offset rather than a scale in 4 of 4 batches"));
 }
 
 TEST_F(CalibrateGauges, NeedATableThatTheyKnow) {

@@ -2,7 +2,6 @@
 // Lengths give back the growth, the slip and the bed's slope that were put into them, and no more.
 #include "slicer/calibrate/gauge_lengths.h"
 
-#include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -11,6 +10,7 @@
 #include <random>
 
 #include "slicer/error.h"
+#include "tests/support/caliper_readings.h"
 #include "tests/support/program.h"
 
 namespace binderjet {
@@ -18,43 +18,9 @@ namespace {
 
 using testing::HasSubstr;
 
-// What a made-up printer does to 20 x 15 x 10 mm blocks, eight to a batch.
-struct Printer {
-  double offset_mm = 0.5;
-  double scale = 0;
-  double slip_y_mm = 0;   // of the third reading
-  double column_mm = 0;   // in x, per column of four parts
-  double part_mm = 0.05;  // standard deviations
-  double reading_mm = 0.05;
-};
-
-void write_readings(const std::string& path, const Printer& printer, unsigned seed) {
-  std::mt19937 random(seed);
-  std::normal_distribution<double> normal;
-  std::ofstream file(path);
-  file << "# made up\nbatch,part,rep,nominal_x,nominal_y,nominal_z,meas_x,meas_y,meas_z\n";
-  for (int batch = 1; batch <= 4; ++batch) {
-    for (int part = 1; part <= 8; ++part) {
-      const double part_error = printer.part_mm * normal(random);
-      for (int rep = 1; rep <= 3; ++rep) {
-        const double nominal[] = {20, 15, 10};
-        double measured[3];
-        for (int a = 0; a < 3; ++a) {
-          measured[a] = nominal[a] * (1 + printer.scale) + printer.offset_mm + 0.1 * batch +
-                        part_error + printer.reading_mm * normal(random);
-        }
-        measured[0] += printer.column_mm * ((part - 1) / 4);
-        measured[1] += rep == 3 ? printer.slip_y_mm : 0;
-        file << fmt::format("{},{},{},20,15,10,{:.3f},{:.3f},{:.3f}\n", batch, part, rep,
-                            measured[0], measured[1], measured[2]);
-      }
-    }
-  }
-}
-
 class Lengths : public testing::Test {
  protected:
-  LengthFindings trace(const Printer& printer, unsigned seed = 1) const {
+  LengthFindings trace(const MeasuredBlocks& printer, unsigned seed = 1) const {
     write_readings(place_ / "g.csv", printer, seed);
     return trace_lengths(read_gauge_table(place_ / "g.csv"), {});
   }
@@ -82,7 +48,7 @@ TEST_F(Lengths, TellAnOffsetFromAScale) {
   const LengthFindings offset = trace({});
   EXPECT_EQ(rung(offset, "growth per batch").form, "offset");
   EXPECT_EQ(offset.offset_batches(), 4);
-  Printer scales;
+  MeasuredBlocks scales;
   scales.offset_mm = -0.25;  // with the batches' own growth, none on average
   scales.scale = 0.04;
   const LengthFindings scale = trace(scales);
@@ -91,7 +57,7 @@ TEST_F(Lengths, TellAnOffsetFromAScale) {
 }
 
 TEST_F(Lengths, FindTheSlipAndTheSlopeOnTheirAxes) {
-  Printer printer;
+  MeasuredBlocks printer;
   printer.slip_y_mm = 0.2;
   printer.column_mm = 0.15;
   const LengthFindings found = trace(printer);
