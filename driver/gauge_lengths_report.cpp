@@ -26,6 +26,12 @@ const Rung* last_accepted(const Ladder& ladder) {
   return last;
 }
 
+// A term that another one took the place of has no columns any more.
+bool has_columns(const Rung& rung, const Ladder& ladder) {
+  return std::any_of(ladder.columns.begin(), ladder.columns.end(),
+                     [&](const auto& column) { return column.term == rung.name; });
+}
+
 // A term of the ladder as the effect that it is in the catalogue.
 FoundEffect effect_of(const Rung& rung, const Ladder& ladder) {
   FoundEffect effect;
@@ -56,18 +62,17 @@ FoundEffect effect_of(const Rung& rung, const Ladder& ladder) {
   return effect;
 }
 
-// What stayed in. A term that another one took the place of has no columns any more; what it
-// brought counts for its successor.
+// What stayed in; what a replaced term brought counts for its successor.
 std::vector<FoundEffect> effects_of(const Ladder& ladder) {
   std::vector<FoundEffect> effects;
   double p = 1;
   double left = 1;
   for (const Rung& rung : ladder.rungs) {
     if (!rung.accepted) continue;
-    FoundEffect effect = effect_of(rung, ladder);
     p = std::min(p, rung.p);
     left *= 1 - rung.gain;
-    if (effect.parameters.empty()) continue;
+    if (!has_columns(rung, ladder)) continue;
+    FoundEffect effect = effect_of(rung, ladder);
     effect.p = p;
     effect.heldout_gain = 1 - left;
     effects.push_back(std::move(effect));
@@ -82,11 +87,10 @@ std::string verdict(const LengthFindings& found) {
   if (last == nullptr) return "The readings are the nominal lengths, as far as they can tell.";
   std::vector<std::string> names;
   for (const Rung& rung : ladder.rungs) {
-    if (rung.accepted && rung.name != "growth per batch") {
+    if (rung.accepted && has_columns(rung, ladder)) {
       names.push_back(fmt::format("{} ({})", rung.name, rung.form));
     }
   }
-  if (names.empty()) names.push_back("growth per batch");
   names.front().front() = static_cast<char>(std::toupper(names.front().front()));
   return fmt::format(
       "Parts are off by {} mm (rms; median {}). {} bring{} that to {} mm (median {}) on parts that "
@@ -232,7 +236,11 @@ std::string page_of(const LengthFindings& found, const GaugeTable& table) {
   }
   body += html::section("What the error follows", "<div class=\"charts\">\n" + charts + "</div>\n");
   if (!ladder.columns.empty()) {
-    body += html::section("What the parts lacked", effects_table(effects_of(ladder)));
+    body += html::section("What the parts lacked",
+                          effects_table(effects_of(ladder)) +
+                              html::note("Numbers are millimetres, each with its standard error. "
+                                         "Held-out gain: share of the squared error gone in parts "
+                                         "that the fit did not see."));
     body +=
         html::section("The numbers", "<details><summary>" + std::to_string(ladder.columns.size()) +
                                          " numbers of what was kept</summary>\n" +

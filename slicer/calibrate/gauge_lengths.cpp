@@ -252,14 +252,18 @@ LengthFindings trace_lengths(const GaugeTable& table, const LengthRules& rules) 
   const VectorXd& after = found.ladder.heldout;
   found.profiles.push_back(profile("axis", readings, after, axis_label));
   found.profiles.push_back(profile("batch", readings, after, batch_label));
-  found.profiles.push_back(
-      profile("reading (x only)", readings, after, [](const LengthBlock& block, std::size_t axis) {
-        return axis == 0 && !block.reading.empty() ? "reading " + block.reading : std::string();
-      }));
-  found.profiles.push_back(
-      profile("part (x only)", readings, after, [](const LengthBlock& block, std::size_t axis) {
-        return axis == 0 && block.number ? "part " + block.part : std::string();
-      }));
+  for (const std::size_t shown : axes) {
+    const std::string axis_name = kAxisNames[shown];
+    found.profiles.push_back(profile(
+        "reading, " + axis_name, readings, after, [&](const LengthBlock& block, std::size_t axis) {
+          return axis == shown && !block.reading.empty() ? "reading " + block.reading
+                                                         : std::string();
+        }));
+    found.profiles.push_back(profile(
+        "part, " + axis_name, readings, after, [&](const LengthBlock& block, std::size_t axis) {
+          return axis == shown && block.number ? "part " + block.part : std::string();
+        }));
+  }
   return found;
 }
 

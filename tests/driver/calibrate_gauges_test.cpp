@@ -76,7 +76,9 @@ TEST_F(CalibrateGauges, TakeCaliperReadingsToo) {
   EXPECT_LT(json["after"]["rms_mm"], 0.2 * json["before"]["rms_mm"].get<double>());
   const std::string page = here_.text("out/report.html");
   EXPECT_EQ(markup_fault(page), "");
-  EXPECT_THAT(page, HasSubstr("Layer shift"));
+  EXPECT_THAT(page, HasSubstr("Growth per batch (offset), layer shift (along y), place on the bed "
+                              "(4 parts to a column) bring that to"));
+  EXPECT_THAT(page, HasSubstr("by reading, y")) << "where the shift is seen";
 
   const Ran told = here_.run(
       {"calibrate", "-p", "z450", "--gauges", here_ / "lengths.csv", "-o", here_ / "told"});
