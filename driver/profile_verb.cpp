@@ -66,7 +66,8 @@ void add_profile_verb(CLI::App& program) {
   show->add_option("NAME", *name, "a profile's name or path")->required();
   show->callback([console = add_console_options(*show), name] {
     const Profile profile = load_profile(*name);
-    console->result(to_json(profile), profile.text);
+    const bool ends = profile.text.ends_with('\n');  // as what is printed does anyway
+    console->result(to_json(profile), profile.text.substr(0, profile.text.size() - ends));
   });
 
   CLI::App* check = verb->add_subcommand("check", "read a profile strictly and say what is wrong");
