@@ -236,6 +236,29 @@ TEST(Calibrate, TakesTheMiddleOfTheLayersThatMayBeTheLostOne) {
   EXPECT_NEAR(found.effects[0].parameters.at("at_mm")[0], 9 * 0.102, 0.102 + 1e-9);
 }
 
+TEST(Calibrate, NamesJitterWhereLayersAreShiftedByChance) {
+  constexpr double kSigmaMm = 0.04;
+  for (const unsigned seed : {1U, 2U, 3U}) {
+    SCOPED_TRACE(seed);
+    std::mt19937 engine(seed);
+    std::normal_distribution<double> normal(0, kSigmaMm);
+    std::vector<std::array<double, 2>> shifts(25);
+    for (std::array<double, 2>& shift : shifts) shift = {normal(engine), normal(engine)};
+    Printer printer;
+    printer.shift_mm = [&](const hidden::At& at) {
+      return shifts.at(static_cast<std::size_t>(at.layer));
+    };
+    MeasuredJob a = hidden::part("a", {7, 7, 2.5}, 0);
+    hidden::print(printer, a, 1);
+    const Calibration found = calibrate(a, {}, hidden::declared(), {}, [](const std::string&) {});
+    ASSERT_EQ(found.effects.size(), 1U);
+    EXPECT_EQ(found.effects[0].kind, "jitter");
+    for (const double sigma : found.effects[0].parameters.at("sigma_mm")) {
+      EXPECT_NEAR(sigma, kSigmaMm, 0.015);
+    }
+  }
+}
+
 TEST(Calibrate, GivesTheSameTwice) {
   const Printer printer = printer_named(hidden::catalogue(1), "parity");
   const std::array<double, 3> small{5, 5, 1.3};
