@@ -33,6 +33,18 @@ std::vector<RunLayer> slices(const std::string& kind) {
   return out;
 }
 
+// A column of a layer as a row.
+std::vector<int> column(const RunLayer& layer, double x_mm) {
+  std::vector<int> flips;
+  bool solid = false;
+  for (int y = 0; y <= layer.height(); ++y) {
+    const bool here = layer.at(static_cast<int>(x_mm / kVoxelMm), y);
+    if (here != solid) flips.push_back(y);
+    solid = here;
+  }
+  return flips;
+}
+
 // The widths of the gaps (or runs) in a row, in mm.
 std::vector<double> widths(std::span<const int> row, bool gaps) {
   std::vector<double> out;
@@ -54,24 +66,25 @@ TEST(Coupon, OfThePaperHasItsTenSlots) {
   EXPECT_EQ(gaps.size(), 11U) << "and the way to the other block";
 }
 
+TEST(Coupon, OfWallsHasFifteenBothWaysOnOnePlate) {
+  const auto layers = slices("walls");
+  const RunLayer& layer = layers[25];
+  const auto across_x = widths(layer.row(static_cast<int>(4 / kVoxelMm)), false);
+  const auto walls_y = column(layer, 4);
+  for (int tenth = 1; tenth <= 15; ++tenth) {
+    EXPECT_TRUE(holds(across_x, tenth / 10.0)) << tenth;
+    EXPECT_TRUE(holds(widths(walls_y, false), tenth / 10.0)) << tenth;
+  }
+  EXPECT_EQ(column(layers[5], 4).size(), 2U) << "the plate that carries them";
+}
+
 TEST(Coupon, FullHasSlotsAndWallsOfAllWidthsBothWays) {
   const auto layers = slices("full");
   ASSERT_EQ(layers.size(), 44U);
   const RunLayer& layer = layers[40];
-  // A column of the layer as a row.
-  const auto column = [&](double x_mm) {
-    std::vector<int> flips;
-    bool solid = false;
-    for (int y = 0; y <= layer.height(); ++y) {
-      const bool here = layer.at(static_cast<int>(x_mm / kVoxelMm), y);
-      if (here != solid) flips.push_back(y);
-      solid = here;
-    }
-    return flips;
-  };
   const auto row = [&](double y_mm) { return layer.row(static_cast<int>(y_mm / kVoxelMm)); };
-  const auto slots_y = column(28);
-  const auto walls_y = column(24);
+  const auto slots_y = column(layer, 28);
+  const auto walls_y = column(layer, 24);
   for (const double width : {0.1, 0.3, 0.5, 0.7, 1.0, 1.5}) {
     EXPECT_TRUE(holds(widths(row(2), true), width)) << "slot across x, " << width;
     EXPECT_TRUE(holds(widths(row(6), false), width)) << "wall across x, " << width;
