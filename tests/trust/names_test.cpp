@@ -12,8 +12,8 @@
 
 #include "slicer/stack/png.h"
 #include "slicer/stack/whole_file.h"
-#include "tests/support/archive.h"
 #include "tests/support/program.h"
+#include "tests/support/scene_files.h"
 
 namespace binderjet {
 namespace {
@@ -94,35 +94,17 @@ std::string wrl1(const std::string& image, const std::string& inlined) {
 }
 
 std::string model_3mf(const std::string& image, const std::string& model) {
-  const std::string rels =
-      "<?xml version=\"1.0\"?><Relationships "
-      "xmlns=\"http://schemas.openxmlformats.org/package/2006/relationships\"><Relationship "
-      "Target=\"";
-  const std::string type =
-      "\" Id=\"r\" Type=\"http://schemas.microsoft.com/3dmanufacturing/2013/01/";
-  return archive_bytes(
-      {{"[Content_Types].xml",
-        "<?xml version=\"1.0\"?><Types xmlns=\"http://schemas.openxmlformats.org/package/2006/"
-        "content-types\"><Default Extension=\"rels\" ContentType=\"application/"
-        "vnd.openxmlformats-package.relationships+xml\"/><Default Extension=\"model\" "
-        "ContentType=\"application/vnd.ms-package.3dmanufacturing-3dmodel+xml\"/><Default "
-        "Extension=\"png\" ContentType=\"image/png\"/></Types>"},
-       {"_rels/.rels", rels + "/" + model + type + "3dmodel\"/></Relationships>"},
-       {"3D/_rels/3dmodel.model.rels", rels + image + type + "3dtexture\"/></Relationships>"},
-       {model,
-        "<?xml version=\"1.0\"?><model unit=\"millimeter\" "
-        "xmlns=\"http://schemas.microsoft.com/3dmanufacturing/core/2015/02\" "
-        "xmlns:m=\"http://schemas.microsoft.com/3dmanufacturing/material/2015/02\"><resources>"
-        "<m:texture2d id=\"1\" path=\"" +
-            image +
-            "\" contenttype=\"image/png\"/><m:texture2dgroup id=\"2\" texid=\"1\">"
-            "<m:tex2coord u=\"0\" v=\"0\"/></m:texture2dgroup><object id=\"3\" type=\"model\" "
-            "pid=\"2\" pindex=\"0\"><mesh><vertices><vertex x=\"0\" y=\"0\" z=\"0\"/><vertex "
-            "x=\"4\" y=\"0\" z=\"0\"/><vertex x=\"0\" y=\"4\" z=\"0\"/><vertex x=\"0\" y=\"0\" "
-            "z=\"4\"/></vertices><triangles><triangle v1=\"0\" v2=\"2\" v3=\"1\"/><triangle "
-            "v1=\"0\" v2=\"1\" v3=\"3\"/><triangle v1=\"0\" v2=\"3\" v3=\"2\"/><triangle v1=\"1\" "
-            "v2=\"2\" v3=\"3\"/></triangles></mesh></object></resources><build><item "
-            "objectid=\"3\"/></build></model>"}});
+  return package_3mf(
+      {.resources = "<m:texture2d id=\"1\" path=\"" + image + R"(" contenttype="image/png"/>
+         <m:texture2dgroup id="2" texid="1"><m:tex2coord u="0" v="0"/></m:texture2dgroup>
+         <object id="3" type="model" pid="2" pindex="0"><mesh><vertices>
+         <vertex x="0" y="0" z="0"/><vertex x="4" y="0" z="0"/><vertex x="0" y="4" z="0"/>
+         <vertex x="0" y="0" z="4"/></vertices><triangles><triangle v1="0" v2="2" v3="1"/>
+         <triangle v1="0" v2="1" v3="3"/><triangle v1="0" v2="3" v3="2"/>
+         <triangle v1="1" v2="2" v3="3"/></triangles></mesh></object>)",
+       .build = "<item objectid=\"3\"/>",
+       .model = model,
+       .image = image});
 }
 
 // model/ holds a model; outside of it lies what the model must not see.
@@ -131,7 +113,7 @@ class Names : public testing::Test {
   Names() {
     std::filesystem::create_directories(here_ / "model/sub");
     const std::vector<std::byte> png =
-        encode_png_rgb(std::vector<std::byte>(3 * 16, std::byte{255}), 4, 4, {1, 1});
+        encode_png_rgb(std::vector<std::byte>(48, std::byte{255}), 4, 4, {1, 1});
     for (const std::string folder : {"", "model/"}) {
       write_file(here_ / (folder + "own.png"), png);
       write(folder + "own.mtl", "newmtl paint\nKd 1 0 0\n");

@@ -5,11 +5,10 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <cstring>
 
 #include "slicer/mesh/read_mesh.h"
 #include "tests/slicer/color/colored_layers.h"
-#include "tests/support/archive.h"
+#include "tests/support/scene_files.h"
 
 namespace binderjet {
 namespace {
@@ -52,78 +51,43 @@ void expect_the_image(const std::string& path) {
   near(0.75, 0.25, {255, 255, 255});
 }
 
-template <typename T>
-std::string raw(std::initializer_list<T> values) {
-  std::string bytes(values.size() * sizeof(T), '\0');
-  std::memcpy(bytes.data(), values.begin(), bytes.size());
-  return bytes;
-}
-
 std::string square_glb(const std::string& image, const std::string& mime) {
-  std::string data = raw<float>({0, 0, 0, 1, 0, 0, 1, 1, 0, 0, 1, 0});
-  data += raw<float>({0, 1, 1, 1, 1, 0, 0, 0});  // glTF counts v from the top
-  data += raw<std::uint16_t>({0, 1, 2, 0, 2, 3});
+  std::string data = raw_bytes<float>({0, 0, 0, 1, 0, 0, 1, 1, 0, 0, 1, 0});
+  data += raw_bytes<float>({0, 1, 1, 1, 1, 0, 0, 0});  // glTF counts v from the top
+  data += raw_bytes<std::uint16_t>({0, 1, 2, 0, 2, 3});
   data += image;
-  data.resize((data.size() + 3) / 4 * 4, '\0');
-  std::string json = R"({"asset":{"version":"2.0"},"scene":0,"scenes":[{"nodes":[0]}],
+  const std::string json = R"({"asset":{"version":"2.0"},"scene":0,"scenes":[{"nodes":[0]}],
     "nodes":[{"mesh":0}],"meshes":[{"primitives":[{"attributes":{"POSITION":0,"TEXCOORD_0":1},
     "indices":2,"material":0}]}],"materials":[{"pbrMetallicRoughness":{"baseColorTexture":
     {"index":0}}}],"textures":[{"source":0}],"images":[{"bufferView":3,"mimeType":")" +
-                     mime + R"("}],"buffers":[{"byteLength":)" + std::to_string(data.size()) +
-                     R"(}],"bufferViews":[{"buffer":0,"byteLength":48},
+                           mime + R"("}],"buffers":[{"byteLength":)" + std::to_string(data.size()) +
+                           R"(}],"bufferViews":[{"buffer":0,"byteLength":48},
     {"buffer":0,"byteOffset":48,"byteLength":32},{"buffer":0,"byteOffset":80,"byteLength":12},
     {"buffer":0,"byteOffset":92,"byteLength":)" +
-                     std::to_string(image.size()) + R"(}],"accessors":[
+                           std::to_string(image.size()) + R"(}],"accessors":[
     {"bufferView":0,"componentType":5126,"count":4,"type":"VEC3","min":[0,0,0],"max":[1,1,0]},
     {"bufferView":1,"componentType":5126,"count":4,"type":"VEC2"},
     {"bufferView":2,"componentType":5123,"count":6,"type":"SCALAR"}]})";
-  json.resize((json.size() + 3) / 4 * 4, ' ');
-  const auto size = [](std::size_t bytes) {
-    return raw<std::uint32_t>({static_cast<std::uint32_t>(bytes)});
-  };
-  return "glTF" + size(2) + size(28 + json.size() + data.size()) + size(json.size()) + "JSON" +
-         json + size(data.size()) + std::string("BIN\0", 4) + data;
+  return glb_file(json, data);
 }
 
 std::string square_3mf(const std::string& image, const std::string& extension,
                        const std::string& mime) {
   const std::string place = "/3D/Textures/image." + extension;
-  const std::string opened = R"(<?xml version="1.0"?>)";
-  const std::string relations =
-      opened +
-      R"(<Relationships xmlns="http://schemas.openxmlformats.org/package/2006/relationships">)";
-  return archive_bytes(
-      {{"[Content_Types].xml",
-        opened + R"(<Types xmlns="http://schemas.openxmlformats.org/package/2006/content-types">
-          <Default Extension="rels"
-            ContentType="application/vnd.openxmlformats-package.relationships+xml"/>
-          <Default Extension="model"
-            ContentType="application/vnd.ms-package.3dmanufacturing-3dmodel+xml"/>
-          <Default Extension=")" +
-            extension +
-            R"(" ContentType="application/vnd.ms-package.3dmanufacturing-3dmodeltexture"/>
-          </Types>)"},
-       {"_rels/.rels", relations + R"(<Relationship Target="/3D/3dmodel.model" Id="rel0"
-          Type="http://schemas.microsoft.com/3dmanufacturing/2013/01/3dmodel"/></Relationships>)"},
-       {"3D/_rels/3dmodel.model.rels",
-        relations + "<Relationship Target=\"" + place + R"(" Id="rel1"
-          Type="http://schemas.microsoft.com/3dmanufacturing/2013/01/3dtexture"/></Relationships>)"},
-       {"3D/3dmodel.model", opened + R"(<model unit="millimeter"
-          xmlns="http://schemas.microsoft.com/3dmanufacturing/core/2015/02"
-          xmlns:m="http://schemas.microsoft.com/3dmanufacturing/material/2015/02"><resources>
-          <m:texture2d id="5" path=")" +
-                                place + R"(" contenttype=")" + mime + R"("/>
-          <m:texture2dgroup id="6" texid="5"><m:tex2coord u="0" v="0"/><m:tex2coord u="1" v="0"/>
-          <m:tex2coord u="1" v="1"/><m:tex2coord u="0" v="1"/></m:texture2dgroup>
-          <object id="1" type="model"><mesh><vertices><vertex x="0" y="0" z="0"/>
-          <vertex x="1" y="0" z="0"/><vertex x="1" y="1" z="0"/><vertex x="0" y="1" z="0"/>
-          <vertex x="0.5" y="0.5" z="-1"/></vertices><triangles>
-          <triangle v1="0" v2="1" v3="2" pid="6" p1="0" p2="1" p3="2"/>
-          <triangle v1="0" v2="2" v3="3" pid="6" p1="0" p2="2" p3="3"/>
-          <triangle v1="1" v2="0" v3="4"/><triangle v1="2" v2="1" v3="4"/>
-          <triangle v1="3" v2="2" v3="4"/><triangle v1="0" v2="3" v3="4"/></triangles></mesh>
-          </object></resources><build><item objectid="1"/></build></model>)"},
-       {place.substr(1), image}});
+  return package_3mf(
+      {.resources = "<m:texture2d id=\"5\" path=\"" + place + "\" contenttype=\"" + mime + R"("/>
+      <m:texture2dgroup id="6" texid="5"><m:tex2coord u="0" v="0"/><m:tex2coord u="1" v="0"/>
+      <m:tex2coord u="1" v="1"/><m:tex2coord u="0" v="1"/></m:texture2dgroup>
+      <object id="1" type="model"><mesh><vertices><vertex x="0" y="0" z="0"/>
+      <vertex x="1" y="0" z="0"/><vertex x="1" y="1" z="0"/><vertex x="0" y="1" z="0"/>
+      <vertex x="0.5" y="0.5" z="-1"/></vertices><triangles>
+      <triangle v1="0" v2="1" v3="2" pid="6" p1="0" p2="1" p3="2"/>
+      <triangle v1="0" v2="2" v3="3" pid="6" p1="0" p2="2" p3="3"/>
+      <triangle v1="1" v2="0" v3="4"/><triangle v1="2" v2="1" v3="4"/>
+      <triangle v1="3" v2="2" v3="4"/><triangle v1="0" v2="3" v3="4"/></triangles></mesh></object>)",
+       .build = "<item objectid=\"1\"/>",
+       .image = place,
+       .image_bytes = image});
 }
 
 TEST(ImageWithin, AGlbMayBeInAnyFormatThatExportersUse) {

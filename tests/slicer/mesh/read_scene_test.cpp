@@ -10,7 +10,7 @@
 #include "slicer/mesh/boundary.h"
 #include "slicer/mesh/read_mesh.h"
 #include "tests/slicer/mesh/samples.h"
-#include "tests/support/archive.h"
+#include "tests/support/scene_files.h"
 
 namespace binderjet {
 namespace {
@@ -21,12 +21,6 @@ using testing::error_of;
 using ::testing::HasSubstr;
 using testing::TemporaryFile;
 
-std::string little(std::size_t value, int bytes) {
-  std::string text;
-  for (int i = 0; i < bytes; ++i) text += static_cast<char>(value >> 8 * i);
-  return text;
-}
-
 std::string model_3mf(const std::string& unit, const std::string& resources,
                       const std::string& build) {
   const std::string tetrahedron =
@@ -35,24 +29,11 @@ std::string model_3mf(const std::string& unit, const std::string& resources,
       "v1=\"0\" v2=\"2\" v3=\"1\"/><triangle v1=\"0\" v2=\"1\" v3=\"3\"/><triangle v1=\"0\" "
       "v2=\"3\" "
       "v3=\"2\"/><triangle v1=\"1\" v2=\"2\" v3=\"3\"/></triangles></mesh>";
-  const std::string types =
-      "<?xml version=\"1.0\"?><Types xmlns=\"http://schemas.openxmlformats.org/package/2006/"
-      "content-types\"><Default Extension=\"rels\" ContentType=\"application/"
-      "vnd.openxmlformats-package.relationships+xml\"/><Default Extension=\"model\" "
-      "ContentType=\"application/vnd.ms-package.3dmanufacturing-3dmodel+xml\"/></Types>";
-  const std::string relations =
-      "<?xml version=\"1.0\"?><Relationships "
-      "xmlns=\"http://schemas.openxmlformats.org/package/2006/"
-      "relationships\"><Relationship Target=\"/3D/3dmodel.model\" Id=\"rel0\" "
-      "Type=\"http://schemas.microsoft.com/3dmanufacturing/2013/01/3dmodel\"/></Relationships>";
-  const std::string model =
-      "<?xml version=\"1.0\"?><model unit=\"" + unit +
-      "\" xmlns=\"http://schemas.microsoft.com/3dmanufacturing/core/2015/02\"><resources><object "
-      "id=\"1\" type=\"model\">" +
-      tetrahedron + "</object><object id=\"2\" type=\"support\">" + tetrahedron + "</object>" +
-      resources + "</resources><build>" + build + "</build></model>";
-  return archive_bytes(
-      {{"[Content_Types].xml", types}, {"_rels/.rels", relations}, {"3D/3dmodel.model", model}});
+  return package_3mf({.resources = "<object id=\"1\" type=\"model\">" + tetrahedron +
+                                   "</object><object id=\"2\" type=\"support\">" + tetrahedron +
+                                   "</object>" + resources,
+                      .build = build,
+                      .unit = unit});
 }
 
 MeshFile read(const std::string& name, const std::string& content) {
@@ -98,14 +79,9 @@ TEST(Read3mf, RefusesAnEmptyBuild) {
 
 // A GLB with one tetrahedron in a node of its own transform.
 std::string glb(const std::string& node) {
-  std::string data;
-  for (const float value : {0.f, 0.f, 0.f, 1.f, 0.f, 0.f, 0.f, 2.f, 0.f, 0.f, 0.f, 3.f}) {
-    data.append(reinterpret_cast<const char*>(&value), 4);
-  }
-  for (const std::uint32_t index : {0u, 2u, 1u, 0u, 1u, 3u, 0u, 3u, 2u, 1u, 2u, 3u}) {
-    data += little(index, 2);
-  }
-  std::string json =
+  const std::string data = raw_bytes<float>({0, 0, 0, 1, 0, 0, 0, 2, 0, 0, 0, 3}) +
+                           raw_bytes<std::uint16_t>({0, 2, 1, 0, 1, 3, 0, 3, 2, 1, 2, 3});
+  const std::string json =
       "{\"asset\":{\"version\":\"2.0\"},\"scene\":0,\"scenes\":[{\"nodes\":[0]}],\"nodes\":[{" +
       node +
       "\"mesh\":0}],\"meshes\":[{\"primitives\":[{\"attributes\":{\"POSITION\":0},\"indices\":1}]}]"
@@ -116,10 +92,7 @@ std::string glb(const std::string& node) {
       "5126,"
       "\"count\":4,\"type\":\"VEC3\",\"min\":[0,0,0],\"max\":[1,2,3]},{\"bufferView\":1,"
       "\"componentType\":5123,\"count\":12,\"type\":\"SCALAR\"}]}";
-  json.resize((json.size() + 3) / 4 * 4, ' ');
-  return "glTF" + little(2u, 4) + little(28 + json.size() + data.size(), 4) +
-         little(json.size(), 4) + "JSON" + json + little(data.size(), 4) + std::string("BIN\0", 4) +
-         data;
+  return glb_file(json, data);
 }
 
 TEST(ReadGltf, StandsWhereItsNodePutsItAndWarnsOfMetres) {
