@@ -69,7 +69,7 @@ TEST_F(PrintVerb, PutsAJobIntoASpoolAndStatusFindsItThere) {
 TEST_F(PrintVerb, SaysHowToResumeAndResumesToTheSameBytes) {
   const std::string right = file_text(folder_ / "a.bjob");
   std::string wrong = right;
-  const auto entry = JobReader::open(folder_ / "a.bjob")->entries()[2 * 30];
+  const auto entry = JobReader::open(folder_ / "a.bjob")->entries()[60];  // layer 30: each has two
   wrong[entry.offset + 50] = static_cast<char>(wrong[entry.offset + 50] ^ 1);
   write_text(folder_ / "a.bjob", wrong);
   const auto [status, line] = error_of({"print", folder_ / "a.bjob", "--to", to_});
