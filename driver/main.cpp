@@ -7,9 +7,9 @@
 #include <exception>
 #include <new>
 
-#include "driver/console.h"
-#include "driver/program.h"
-#include "slicer/error.h"
+#include "driver/base/console.h"
+#include "driver/verbs/program.h"
+#include "slicer/base/error.h"
 
 namespace {
 

@@ -35,7 +35,7 @@ for sanitizer in "$@"; do
       flags="-fsanitize=address,undefined -fno-sanitize-recover=undefined"
       libraries=()
       alone=(transport emulator usb fuzz)
-      rest=(slicer driver paper properties calibrate trust install)
+      rest=(slicer driver paper properties hidden_printers trust install)
       leave_out=${SLOW-$slow}
       ;;
     thread)  # what computes in parallel or sends
@@ -43,7 +43,7 @@ for sanitizer in "$@"; do
       flags="-fsanitize=thread"
       libraries=(-DCMAKE_BUILD_RPATH="$build/tbb/lib")
       alone=(transport emulator)
-      rest=(slicer driver properties calibrate)
+      rest=(slicer driver properties hidden_printers)
       leave_out=${SLOW-$slow$slow_thread}
       ;;
   esac

@@ -6,9 +6,9 @@
 #include <exception>
 #include <string>
 
-#include "driver/files.h"
+#include "driver/base/files.h"
 #include "driver/manual/manual.h"
-#include "driver/program.h"
+#include "driver/verbs/program.h"
 
 int main(int argc, char** argv) {
   using namespace binderjet;

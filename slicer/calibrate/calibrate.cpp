@@ -4,7 +4,7 @@
 #include <algorithm>
 
 #include "slicer/calibrate/calibrator.h"
-#include "slicer/calibrate/profiles.h"
+#include "slicer/calibrate/residual/residual_by_axis.h"
 #include "slicer/calibrate/score_prints.h"
 
 namespace binderjet {

@@ -4,7 +4,7 @@
 
 #include <functional>
 
-#include "slicer/calibrate/calibration.h"
+#include "slicer/calibrate/job/calibration.h"
 
 namespace binderjet {
 

@@ -6,8 +6,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "slicer/calibrate/jitter.h"
-#include "slicer/calibrate/sign_flips.h"
+#include "slicer/calibrate/choice/jitter.h"
+#include "slicer/calibrate/choice/null_draws.h"
 
 namespace binderjet {
 namespace {

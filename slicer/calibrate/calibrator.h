@@ -7,10 +7,10 @@
 #include <vector>
 
 #include "slicer/calibrate/calibrate.h"
-#include "slicer/calibrate/choose.h"
-#include "slicer/calibrate/fit.h"
-#include "slicer/calibrate/printed_error.h"
-#include "slicer/calibrate/trials.h"
+#include "slicer/calibrate/choice/fit.h"
+#include "slicer/calibrate/choice/forward_trials.h"
+#include "slicer/calibrate/choice/rank_candidates.h"
+#include "slicer/calibrate/residual/printed_error.h"
 
 namespace binderjet {
 

@@ -3,8 +3,8 @@
 
 #include <oneapi/tbb/parallel_for.h>
 
-#include "slicer/edge_error.h"
-#include "slicer/score.h"
+#include "slicer/score/edge_error.h"
+#include "slicer/score/voxel_counts.h"
 
 namespace binderjet {
 namespace {

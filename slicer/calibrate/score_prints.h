@@ -4,7 +4,7 @@
 
 #include <string>
 
-#include "slicer/calibrate/surface.h"
+#include "slicer/calibrate/residual/surface.h"
 
 namespace binderjet {
 

@@ -7,7 +7,7 @@
 #include <span>
 #include <vector>
 
-#include "slicer/run_layer.h"
+#include "slicer/layers/run_layer.h"
 
 namespace binderjet {
 

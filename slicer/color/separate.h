@@ -6,7 +6,7 @@
 #include <cstddef>
 #include <span>
 
-#include "slicer/run_layer.h"
+#include "slicer/layers/run_layer.h"
 
 namespace binderjet {
 

@@ -7,9 +7,9 @@
 #include <vector>
 
 #include "slicer/color/field.h"
-#include "slicer/grid.h"
-#include "slicer/masks.h"
-#include "slicer/stream.h"
+#include "slicer/enhance/masks.h"
+#include "slicer/layers/grid.h"
+#include "slicer/layers/stream.h"
 
 namespace binderjet {
 

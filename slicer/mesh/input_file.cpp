@@ -9,7 +9,7 @@
 #include <cstring>
 #include <filesystem>
 
-#include "slicer/error.h"
+#include "slicer/base/error.h"
 
 namespace binderjet {
 

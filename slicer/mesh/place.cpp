@@ -10,7 +10,7 @@
 #include <numeric>
 #include <utility>
 
-#include "slicer/error.h"
+#include "slicer/base/error.h"
 
 namespace binderjet {
 namespace {

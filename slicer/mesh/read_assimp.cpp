@@ -20,7 +20,7 @@
 #include <utility>
 #include <vector>
 
-#include "slicer/error.h"
+#include "slicer/base/error.h"
 #include "slicer/mesh/readers.h"
 
 namespace binderjet {

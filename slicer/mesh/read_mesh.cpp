@@ -10,7 +10,7 @@
 #include <limits>
 #include <new>
 
-#include "slicer/error.h"
+#include "slicer/base/error.h"
 #include "slicer/mesh/readers.h"
 
 namespace binderjet {

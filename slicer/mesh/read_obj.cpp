@@ -10,7 +10,7 @@
 #include <string>
 #include <vector>
 
-#include "slicer/error.h"
+#include "slicer/base/error.h"
 #include "slicer/mesh/materials.h"
 #include "slicer/mesh/readers.h"
 

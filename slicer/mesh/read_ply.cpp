@@ -12,7 +12,7 @@
 #include <string>
 #include <vector>
 
-#include "slicer/error.h"
+#include "slicer/base/error.h"
 #include "slicer/mesh/readers.h"
 
 namespace binderjet {

@@ -11,7 +11,7 @@
 #include <string>
 #include <vector>
 
-#include "slicer/error.h"
+#include "slicer/base/error.h"
 #include "slicer/mesh/boundary.h"
 #include "slicer/mesh/readers.h"
 #include "slicer/mesh/weld.h"

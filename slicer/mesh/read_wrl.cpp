@@ -33,7 +33,7 @@
 #include <string>
 #include <vector>
 
-#include "slicer/error.h"
+#include "slicer/base/error.h"
 #include "slicer/mesh/readers.h"
 #include "slicer/mesh/weld.h"
 

@@ -11,7 +11,7 @@
 #include <numeric>
 #include <utility>
 
-#include "slicer/error.h"
+#include "slicer/base/error.h"
 #include "slicer/mesh/boundary.h"
 #include "slicer/mesh/crossings.h"
 #include "slicer/mesh/holes.h"

@@ -8,8 +8,8 @@
 #include <utility>
 #include <vector>
 
-#include "slicer/error.h"
-#include "slicer/stack/whole_file.h"
+#include "slicer/base/error.h"
+#include "slicer/base/whole_file.h"
 
 namespace binderjet {
 namespace {

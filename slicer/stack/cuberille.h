@@ -10,8 +10,8 @@
 #include <memory>
 #include <string>
 
-#include "slicer/grid.h"
-#include "slicer/run_layer.h"
+#include "slicer/layers/grid.h"
+#include "slicer/layers/run_layer.h"
 
 namespace binderjet {
 

@@ -10,7 +10,7 @@
 #include <cstring>
 #include <stdexcept>
 
-#include "slicer/run_layer.h"
+#include "slicer/layers/run_layer.h"
 
 namespace binderjet {
 namespace {

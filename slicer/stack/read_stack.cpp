@@ -7,8 +7,8 @@
 #include <fstream>
 #include <nlohmann/json.hpp>
 
-#include "slicer/error.h"
-#include "slicer/json_int.h"
+#include "slicer/base/error.h"
+#include "slicer/base/strict_json.h"
 #include "slicer/stack/slice_stack.h"
 
 namespace binderjet {

@@ -9,9 +9,9 @@
 #include <nlohmann/json.hpp>
 #include <utility>
 
-#include "slicer/error.h"
+#include "slicer/base/error.h"
+#include "slicer/base/whole_file.h"
 #include "slicer/stack/png.h"
-#include "slicer/stack/whole_file.h"
 
 namespace binderjet {
 namespace {

@@ -6,7 +6,7 @@
 #include <cassert>
 #include <utility>
 
-#include "slicer/stack/whole_file.h"
+#include "slicer/base/whole_file.h"
 
 namespace binderjet {
 

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "slicer/coupon.h"
+#include "slicer/coupon/coupon.h"
 #include "tests/bench/run.h"
 
 namespace binderjet::bench {

@@ -12,7 +12,7 @@
 #include <string>
 #include <vector>
 
-#include "slicer/coupon.h"
+#include "slicer/coupon/coupon.h"
 #include "slicer/mesh/mesh.h"
 #include "tests/bench/run.h"
 

@@ -14,14 +14,14 @@
 #include <memory>
 #include <vector>
 
-#include "slicer/coupon.h"
-#include "slicer/effects/model.h"
-#include "slicer/enhance/paper_rule.h"
-#include "slicer/masks.h"
+#include "slicer/coupon/coupon.h"
+#include "slicer/enhance/masks.h"
+#include "slicer/enhance/paper/paper_rule.h"
 #include "slicer/mesh/place.h"
-#include "slicer/score.h"
-#include "slicer/slicing_operator.h"
+#include "slicer/model/printer_model.h"
+#include "slicer/score/voxel_counts.h"
 #include "slicer/stack/png.h"
+#include "slicer/voxels/slicing_operator.h"
 #include "transport/job_file.h"
 
 namespace binderjet {

@@ -11,13 +11,13 @@
 #include <string_view>
 #include <vector>
 
-#include "driver/job.h"
-#include "driver/profile.h"
-#include "slicer/calibrate/gauge_slots.h"
-#include "slicer/calibrate/length_blocks.h"
-#include "slicer/effects/model.h"
-#include "slicer/error.h"
+#include "driver/job/job.h"
+#include "driver/profile/profile.h"
+#include "slicer/base/error.h"
+#include "slicer/calibrate/gauges/gauge_slots.h"
+#include "slicer/calibrate/gauges/length_blocks.h"
 #include "slicer/mesh/read_mesh.h"
+#include "slicer/model/printer_model.h"
 #include "slicer/stack/slice_stack.h"
 #include "tests/fuzz/targets.h"
 #include "transport/job_file.h"

@@ -8,7 +8,7 @@
 #include <span>
 #include <string_view>
 
-#include "tests/emulator/printer_emulator.h"
+#include "tests/printer/emulator/printer_emulator.h"
 #include "transport/bytes.h"
 #include "transport/frame.h"
 #include "transport/job_format.h"

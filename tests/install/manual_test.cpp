@@ -7,7 +7,7 @@
 #include <regex>
 #include <set>
 
-#include "driver/program.h"
+#include "driver/verbs/program.h"
 #include "tests/support/program.h"
 
 namespace binderjet {

@@ -10,11 +10,11 @@
 #include <cmath>
 #include <memory>
 
-#include "driver/profile.h"
-#include "slicer/effects/model.h"
-#include "slicer/enhance/paper_rule.h"
-#include "slicer/score.h"
-#include "slicer/slicing_operator.h"
+#include "driver/profile/profile.h"
+#include "slicer/enhance/paper/paper_rule.h"
+#include "slicer/model/printer_model.h"
+#include "slicer/score/voxel_counts.h"
+#include "slicer/voxels/slicing_operator.h"
 #include "tests/support/picture.h"
 
 namespace binderjet {

@@ -8,8 +8,8 @@
 #include <iostream>
 #include <vector>
 
-#include "driver/mask_source.h"
-#include "slicer/coupon.h"
+#include "driver/job/mask_source.h"
+#include "slicer/coupon/coupon.h"
 #include "slicer/stack/png.h"
 #include "tests/support/picture.h"
 #include "tests/support/program.h"

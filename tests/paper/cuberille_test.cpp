@@ -8,7 +8,7 @@
 #include <filesystem>
 #include <iostream>
 
-#include "driver/mask_source.h"
+#include "driver/job/mask_source.h"
 #include "tests/support/models.h"
 #include "tests/support/program.h"
 

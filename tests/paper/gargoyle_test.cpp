@@ -9,8 +9,8 @@
 #include <iostream>
 #include <optional>
 
-#include "driver/job.h"
-#include "slicer/score_stream.h"
+#include "driver/job/job.h"
+#include "slicer/score/score.h"
 #include "tests/paper/relief.h"
 #include "tests/support/vector_stream.h"
 

@@ -2,8 +2,8 @@
 // The paper, 4.1: "the applied 2D kernel will have a size of 16x10 voxels".
 #include <gtest/gtest.h>
 
-#include "driver/profile.h"
-#include "slicer/effects/model.h"
+#include "driver/profile/profile.h"
+#include "slicer/model/printer_model.h"
 
 namespace binderjet {
 namespace {

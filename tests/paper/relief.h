@@ -8,9 +8,9 @@
 #include <string>
 #include <vector>
 
-#include "slicer/grid.h"
-#include "slicer/run_layer.h"
-#include "slicer/stream.h"
+#include "slicer/layers/grid.h"
+#include "slicer/layers/run_layer.h"
+#include "slicer/layers/stream.h"
 #include "tests/support/picture.h"
 
 namespace binderjet {

@@ -6,8 +6,8 @@
 
 #include <iostream>
 
-#include "driver/profile.h"
-#include "slicer/masks.h"
+#include "driver/profile/profile.h"
+#include "slicer/enhance/masks.h"
 #include "tests/support/models.h"
 
 namespace binderjet {

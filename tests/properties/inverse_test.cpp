@@ -1,18 +1,17 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Inverse masks: never worse than plain ones, within the rules, and the same however they are made.
-#include "slicer/enhance/inverse.h"
-
 #include <gtest/gtest.h>
 #include <oneapi/tbb/global_control.h>
 
 #include <cstdlib>
 #include <numeric>
 
-#include "slicer/effects/process_window.h"
-#include "slicer/features.h"
-#include "slicer/masks.h"
-#include "slicer/pieces.h"
-#include "slicer/score.h"
+#include "slicer/enhance/inverse/inverse_solver.h"
+#include "slicer/enhance/masks.h"
+#include "slicer/model/process_window.h"
+#include "slicer/score/features.h"
+#include "slicer/score/pieces.h"
+#include "slicer/score/voxel_counts.h"
 #include "tests/support/mask_regions.h"
 #include "tests/support/one_of_each.h"
 #include "tests/support/random.h"

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The paper's rule (its eq. 1): only the boundary moves, and only where the print is wrong.
-#include "slicer/enhance/paper_rule.h"
+#include "slicer/enhance/paper/paper_rule.h"
 
 #include <gtest/gtest.h>
 

@@ -3,7 +3,7 @@
 #include <gtest/gtest.h>
 #include <oneapi/tbb/global_control.h>
 
-#include "slicer/masks.h"
+#include "slicer/enhance/masks.h"
 #include "tests/support/random.h"
 
 namespace binderjet {

@@ -6,7 +6,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "slicer/mask_regions.h"
+#include "slicer/enhance/rules/mask_regions.h"
 
 namespace binderjet::whole {
 

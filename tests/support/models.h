@@ -7,7 +7,7 @@
 #include <string>
 #include <utility>
 
-#include "slicer/coupon_shapes.h"
+#include "slicer/coupon/coupon_shapes.h"
 #include "slicer/mesh/mesh.h"
 
 namespace binderjet::models {

@@ -4,7 +4,7 @@
 
 #include <vector>
 
-#include "slicer/effects/effect.h"
+#include "slicer/model/effects/effect.h"
 
 namespace binderjet::whole {
 

@@ -7,8 +7,8 @@
 #include <string>
 #include <vector>
 
+#include "slicer/base/whole_file.h"
 #include "slicer/stack/indexed_png.h"
-#include "slicer/stack/whole_file.h"
 
 namespace binderjet::pictures {
 

@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "slicer/effects/model.h"
+#include "slicer/model/printer_model.h"
 #include "tests/support/volume.h"
 
 namespace binderjet::whole {

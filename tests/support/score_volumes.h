@@ -5,7 +5,7 @@
 #include <utility>
 #include <vector>
 
-#include "slicer/score_stream.h"
+#include "slicer/score/score.h"
 #include "tests/support/volume.h"
 
 namespace binderjet::whole {

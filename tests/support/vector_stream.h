@@ -6,7 +6,7 @@
 #include <utility>
 #include <vector>
 
-#include "slicer/stream.h"
+#include "slicer/layers/stream.h"
 
 namespace binderjet {
 

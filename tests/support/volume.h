@@ -9,11 +9,11 @@
 #include <utility>
 #include <vector>
 
-#include "slicer/effects/model.h"
-#include "slicer/grid.h"
-#include "slicer/run_layer.h"
-#include "slicer/stream.h"
-#include "slicer/voxelize.h"
+#include "slicer/layers/grid.h"
+#include "slicer/layers/run_layer.h"
+#include "slicer/layers/stream.h"
+#include "slicer/model/printer_model.h"
+#include "slicer/voxels/voxelize.h"
 
 namespace binderjet::whole {
 

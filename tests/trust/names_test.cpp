@@ -10,8 +10,8 @@
 #include <array>
 #include <cstring>
 
+#include "slicer/base/whole_file.h"
 #include "slicer/stack/png.h"
-#include "slicer/stack/whole_file.h"
 #include "tests/support/program.h"
 #include "tests/support/scene_files.h"
 

@@ -14,7 +14,7 @@
 #include "slicer/color/color.h"
 #include "slicer/color/shell.h"
 #include "slicer/color/skin.h"
-#include "slicer/masks.h"
+#include "slicer/enhance/masks.h"
 #include "slicer/mesh/mesh.h"
 #include "tests/support/models.h"
 

@@ -6,7 +6,7 @@
 #include <cstring>
 #include <set>
 
-#include "slicer/error.h"
+#include "slicer/base/error.h"
 #include "slicer/mesh/read_mesh.h"
 #include "tests/slicer/color/colored_layers.h"
 

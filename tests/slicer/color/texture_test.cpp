@@ -4,10 +4,10 @@
 
 #include <cmath>
 
-#include "slicer/error.h"
+#include "slicer/base/error.h"
+#include "slicer/base/whole_file.h"
 #include "slicer/mesh/read_mesh.h"
 #include "slicer/stack/png.h"
-#include "slicer/stack/whole_file.h"
 #include "tests/slicer/color/colored_layers.h"
 
 namespace binderjet {

@@ -10,7 +10,7 @@
 #include <set>
 #include <string>
 
-#include "slicer/error.h"
+#include "slicer/base/error.h"
 #include "slicer/mesh/boundary.h"
 #include "slicer/mesh/place.h"
 #include "slicer/mesh/read_mesh.h"

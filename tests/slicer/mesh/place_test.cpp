@@ -10,7 +10,7 @@
 #include <string>
 #include <vector>
 
-#include "slicer/error.h"
+#include "slicer/base/error.h"
 #include "tests/slicer/mesh/samples.h"
 
 namespace binderjet {

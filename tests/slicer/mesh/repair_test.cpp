@@ -9,7 +9,7 @@
 #include <cmath>
 #include <string>
 
-#include "slicer/error.h"
+#include "slicer/base/error.h"
 #include "slicer/mesh/boundary.h"
 #include "tests/slicer/mesh/samples.h"
 

@@ -6,7 +6,7 @@
 
 #include <random>
 
-#include "slicer/run_layer.h"
+#include "slicer/layers/run_layer.h"
 #include "tests/support/decoded_png.h"
 
 namespace binderjet {

@@ -6,7 +6,7 @@
 #include <filesystem>
 #include <fstream>
 
-#include "slicer/error.h"
+#include "slicer/base/error.h"
 #include "slicer/stack/slice_stack.h"
 #include "tests/slicer/color/colored_layers.h"
 

@@ -1,0 +1,68 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "driver/base/files.h"
+
+#include <fmt/format.h>
+#include <xxhash.h>
+
+#include <cerrno>
+#include <cstdio>
+#include <cstring>
+#include <memory>
+#include <vector>
+
+#include "slicer/base/error.h"
+#include "slicer/base/whole_file.h"
+
+namespace binderjet {
+namespace {
+
+template <class Take>
+void for_each_piece(const std::string& path, Take take) {
+  std::unique_ptr<std::FILE, int (*)(std::FILE*)> file(std::fopen(path.c_str(), "rb"), std::fclose);
+  std::vector<char> piece(1 << 20);
+  while (file) {
+    const std::size_t got = std::fread(piece.data(), 1, piece.size(), file.get());
+    take(piece.data(), got);
+    if (got == piece.size()) continue;
+    if (std::ferror(file.get()) == 0) return;
+    break;
+  }
+  throw Error(ErrorKind::kBadInput, path, std::string("cannot read: ") + std::strerror(errno));
+}
+
+std::string hex(std::uint64_t hash) { return fmt::format("{:016x}", hash); }
+
+}  // namespace
+
+std::string read_text(const std::string& path) {
+  std::string text;
+  for_each_piece(path, [&](const char* bytes, std::size_t size) { text.append(bytes, size); });
+  return text;
+}
+
+void write_text(const std::string& path, const std::string& text) { write_texts({{path, text}}); }
+
+void write_texts(const std::vector<TextFile>& files) {
+  std::vector<std::unique_ptr<WholeFile>> written;
+  for (const TextFile& file : files) {
+    written.push_back(std::make_unique<WholeFile>(file.path));
+    write_file(written.back()->part(), std::as_bytes(std::span(file.text)));
+  }
+  for (const auto& file : written) file->keep();
+}
+
+std::string file_hash(const std::string& path) {
+  const std::unique_ptr<XXH3_state_t, XXH_errorcode (*)(XXH3_state_t*)> state(XXH3_createState(),
+                                                                              XXH3_freeState);
+  XXH3_64bits_reset(state.get());
+  for_each_piece(path, [&](const char* bytes, std::size_t size) {
+    XXH3_64bits_update(state.get(), bytes, size);
+  });
+  return hex(XXH3_64bits_digest(state.get()));
+}
+
+std::string text_hash(const std::string& text) {
+  return hex(XXH3_64bits(text.data(), text.size()));
+}
+
+}  // namespace binderjet

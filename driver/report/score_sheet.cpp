@@ -1,0 +1,122 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "driver/report/score_sheet.h"
+
+#include <oneapi/tbb/blocked_range.h>
+#include <oneapi/tbb/parallel_reduce.h>
+
+#include <algorithm>
+#include <limits>
+#include <nlohmann/json.hpp>
+#include <utility>
+
+#include "driver/job/print_stream.h"
+#include "slicer/voxels/voxelize.h"
+
+namespace binderjet {
+namespace {
+
+// The excess under another model.
+double excess(const MaskSource& masks, const JobHeader& header,
+              const std::shared_ptr<const Mesh>& target, const PrinterModel& model) {
+  const auto wanted = voxelize(target, header.grid, header.box, masks.layers());
+  const auto printed = printed_stream(masks, model);
+  VoxelCounts counts;
+  while (wanted->rest().size() > 0) {
+    const auto slices = wanted->next(kBlockLayers);
+    const auto layers = printed->next(kBlockLayers);
+    for (std::size_t i = 0; i < slices.size(); ++i) counts += count_voxels(*slices[i], *layers[i]);
+  }
+  return counts.excess();
+}
+
+MaskRegions regions_of(const MaskSource& masks) {
+  return oneapi::tbb::parallel_reduce(
+      oneapi::tbb::blocked_range<int>(0, masks.size_px[2]), MaskRegions{},
+      [&](const oneapi::tbb::blocked_range<int>& layers, MaskRegions sum) {
+        for (int k = layers.begin(); k < layers.end(); ++k) sum += mask_regions(masks.read(k));
+        return sum;
+      },
+      [](MaskRegions a, const MaskRegions& b) { return a += b; });
+}
+
+// Null if there is none.
+nlohmann::ordered_json to_json(std::int64_t least_px) {
+  if (least_px == std::numeric_limits<std::int64_t>::max()) return nullptr;
+  return least_px;
+}
+
+}  // namespace
+
+ScoreSheet score_masks(const MaskSource& masks, const JobHeader& header,
+                       const std::shared_ptr<const Mesh>& target,
+                       const std::vector<PrinterModel>& models, const std::string& label,
+                       const Console& console, const ScoreListener& listener) {
+  ScoreSheet sheet{Score(header.grid, masks.first), 0, 0, regions_of(masks)};
+  const auto layers =
+      score_layers(voxelize(target, header.grid, header.box, masks.layers()),
+                   printed_stream(masks, models.front()), header.grid, masks.layers());
+  Progress progress(console, label, masks.size_px[2]);
+  int done = 0;
+  while (layers->rest().size() > 0) {
+    const auto block = layers->next(kBlockLayers);
+    std::vector<Feature> ended;
+    for (const Shared<LayerScore>& layer : block) {
+      const std::vector<Feature> here = sheet.score.add(*layer);
+      ended.insert(ended.end(), here.begin(), here.end());
+    }
+    if (listener) listener(block, ended);
+    done += static_cast<int>(block.size());
+    progress.advance(done);
+  }
+  const std::vector<Feature> ended = sheet.score.finish();
+  if (listener) listener({}, ended);
+
+  sheet.window_worst = sheet.score.voxels().excess();
+  double sum = sheet.window_worst;
+  for (std::size_t m = 1; m < models.size(); ++m) {
+    const double corner = excess(masks, header, target, models[m]);
+    sum += corner;
+    sheet.window_worst = std::max(sheet.window_worst, corner);
+  }
+  sheet.window_mean = sum / static_cast<double>(models.size());
+  return sheet;
+}
+
+MaskSource enhanced_masks(const MaskSource& job, JobHeader header,
+                          const std::shared_ptr<const Mesh>& target, const Console& console) {
+  constexpr int kPaperPasses = 2;
+  if (header.enhance == "paper" && header.passes == 0) header.passes = kPaperPasses;
+  const auto stream = mask_stream(header, target, job.layers());
+  Progress progress(console, "enhancing (" + header.enhance + ")", job.size_px[2]);
+  const auto layers = std::make_shared<std::vector<RunLayer>>();
+  while (stream->rest().size() > 0) {
+    for (const Shared<MaskLayer>& layer : stream->next(kBlockLayers)) {
+      layers->push_back(layer->mask);
+    }
+    progress.advance(static_cast<int>(layers->size()));
+  }
+  MaskSource masks = job;
+  masks.color = nullptr;
+  masks.packed = [layers](int index) { return pack((*layers)[static_cast<std::size_t>(index)]); };
+  return masks;
+}
+
+nlohmann::ordered_json to_json(const ScoreSheet& sheet) {
+  const VoxelCounts& counts = sheet.score.voxels();
+  const EdgeErrors& edges = sheet.score.edges();
+  return {{"solid_voxels", counts.solid},
+          {"wrong", counts.wrong()},
+          {"floor", counts.floor()},
+          {"excess", counts.excess()},
+          {"window_excess", {{"mean", sheet.window_mean}, {"worst", sheet.window_worst}}},
+          {"epe_mm", {{"mean", edges.mean_mm()}, {"p95", edges.p95_mm()}, {"max", edges.max_mm()}}},
+          {"lost", sheet.score.lost()},
+          {"fused", sheet.score.fused()},
+          {"spurious", sheet.score.spurious()},
+          {"separated", sheet.score.separated()},
+          {"mask",
+           {{"least_island_px", to_json(sheet.masks.least_island_px)},
+            {"least_hole_px", to_json(sheet.masks.least_hole_px)}}}};
+}
+
+}  // namespace binderjet

@@ -1,0 +1,130 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// score JOB --target PART: how far the predicted print is from the model that was wanted.
+#include <fmt/format.h>
+#include <oneapi/tbb/parallel_for.h>
+
+#include <CLI/CLI.hpp>
+#include <memory>
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "driver/base/console.h"
+#include "driver/job/mask_source.h"
+#include "driver/report/score_map.h"
+#include "driver/report/score_sheet.h"
+#include "driver/verbs/verbs.h"
+#include "slicer/base/error.h"
+#include "slicer/model/process_window.h"
+
+namespace binderjet {
+namespace {
+
+struct ScoreOptions {
+  std::string job;
+  std::vector<std::string> targets;
+  std::string profile;
+  std::string map;
+  bool compare = false;
+};
+
+// The target as the job placed its own parts, read from the files named now.
+std::shared_ptr<const Mesh> load_target(const ScoreOptions& options, const JobHeader& header) {
+  if (options.targets.size() != header.sources.size()) {
+    throw Error(ErrorKind::kUsage, "--target",
+                fmt::format("the job has {} parts; name each of them, in its order",
+                            header.sources.size()));
+  }
+  std::vector<Part> parts;
+  for (std::size_t i = 0; i < options.targets.size(); ++i) {
+    const Source& source = header.sources[i];
+    parts.push_back(load_part(options.targets[i], source.placement.unit_mm, source.placement));
+    parts.back().source.corner_px = source.corner_px;
+  }
+  return std::make_shared<const Mesh>(merge_parts(std::move(parts), header.grid));
+}
+
+std::string text_of(const ScoreSheet& sheet) {
+  const VoxelCounts& counts = sheet.score.voxels();
+  const EdgeErrors& edges = sheet.score.edges();
+  return fmt::format(
+      "wrong {:.4f} of {} solid voxels, {:.4f} of it unavoidable at this layer height, "
+      "excess {:.4f}\nif the printer is a little off: excess {:.4f} on average, at worst {:.4f}\n"
+      "edges off by {:.3f} mm on average, 95 % by less than {:.3f} mm, "
+      "at most {:.3f} mm\nfeatures: {} lost, {} fused, {} spurious; "
+      "{} parts come out in several pieces",
+      counts.wrong(), counts.solid, counts.floor(), counts.excess(), sheet.window_mean,
+      sheet.window_worst, edges.mean_mm(), edges.p95_mm(), edges.max_mm(), sheet.score.lost(),
+      sheet.score.fused(), sheet.score.spurious(), sheet.score.separated());
+}
+
+std::string table_row(const std::string& enhance, const ScoreSheet& sheet) {
+  return fmt::format("\n{:8} {:7.4f} {:7.4f} {:7.4f} {:8.3f} {:5} {:5} {:8} {:9}", enhance,
+                     sheet.score.voxels().excess(), sheet.window_mean, sheet.window_worst,
+                     sheet.score.edges().mean_mm(), sheet.score.lost(), sheet.score.fused(),
+                     sheet.score.spurious(), sheet.score.separated());
+}
+
+void score(const ScoreOptions& options, const Console& console) {
+  const MaskSource job = open_job(options.job, console);
+  const JobHeader& header = *job.header;
+  const Profile profile = options.profile.empty() ? header.profile : load_profile(options.profile);
+  const std::vector<PrinterModel> models =
+      process_window(profile.effects, header.grid, job.place());
+  const auto target = load_target(options, header);
+
+  std::optional<ScoreMap> map;
+  if (!options.map.empty()) map.emplace(options.map, job, header.grid);
+  int done = 0;
+  const auto draw = [&](const std::vector<Shared<LayerScore>>& layers,
+                        const std::vector<Feature>& ended) {
+    if (!map) return;
+    oneapi::tbb::parallel_for(0, static_cast<int>(layers.size()), [&](int i) {
+      map->write(done + i, *layers[static_cast<std::size_t>(i)]);
+    });
+    done += static_cast<int>(layers.size());
+    map->add(ended);
+  };
+  const ScoreSheet own = score_masks(job, header, target, models, "scoring", console, draw);
+  if (map) map->finish(own.score);
+
+  nlohmann::ordered_json json = to_json(own);
+  std::string text = text_of(own);
+  if (options.compare) {
+    text += "\n\nmasks     excess    mean   worst  edge mm  lost fused spurious separated";
+    JobHeader other = header;
+    other.profile = profile;
+    for (const std::string enhance : {"none", "paper", "inverse"}) {
+      other.enhance = enhance;
+      const MaskSource masks = enhanced_masks(job, other, target, console);
+      const ScoreSheet sheet =
+          score_masks(masks, header, target, models, "scoring (" + enhance + ")", console);
+      json["compare"][enhance] = to_json(sheet);
+      text += table_row(enhance, sheet);
+    }
+  }
+  console.result(json, text);
+}
+
+}  // namespace
+
+void add_score_verb(CLI::App& program) {
+  CLI::App* verb =
+      program.add_subcommand("score", "compare a job's predicted print with its model");
+  auto options = std::make_shared<ScoreOptions>();
+  verb->add_option("JOB", options->job, "a job (.bjob)")->required();
+  verb->add_option("--target", options->targets,
+                   "the model that is wanted, one per part of the job")
+      ->required();
+  verb->add_option("-p,--profile", options->profile, "another printer than the job's own");
+  verb->add_option(
+      "--map", options->map,
+      "a folder to write: what is missing, extra, lost and fused in each layer as PNGs, "
+      "and features.json");
+  verb->add_flag("--compare", options->compare,
+                 "also score the masks without enhancement, of the paper's rule and inverse ones");
+  verb->callback([options, console = add_console_options(*verb)] { score(*options, *console); });
+}
+
+}  // namespace binderjet

@@ -1,0 +1,82 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "slicer/base/whole_file.h"
+
+#include <fcntl.h>
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <cstdio>
+#include <cstring>
+#include <filesystem>
+#include <random>
+
+#include "slicer/base/error.h"
+
+namespace binderjet {
+
+namespace fs = std::filesystem;
+
+WholeFile::WholeFile(const std::string& path) : path_(path) {
+  std::error_code error;
+  const fs::file_status status = fs::status(path, error);
+  if (fs::exists(status) && !fs::is_regular_file(status)) {
+    throw Error(ErrorKind::kUsage, path, "not a plain file; choose another name");
+  }
+  std::random_device chance;
+  do {
+    part_ = fmt::format("{}.part-{:08x}", path, chance());
+    const int fd = open(part_.c_str(), O_CREAT | O_EXCL | O_WRONLY | O_CLOEXEC, 0666);
+    if (fd >= 0) {
+      close(fd);
+      return;
+    }
+  } while (errno == EEXIST);
+  fail_to_write(path);
+}
+
+WholeFile::~WholeFile() {
+  if (!part_.empty()) std::remove(part_.c_str());
+}
+
+void WholeFile::keep() {
+  if (std::rename(part_.c_str(), path_.c_str()) != 0) fail_to_write(path_);
+  part_.clear();
+}
+
+void fail_to_write(const std::string& path) {
+  const bool no_room = errno == ENOSPC || errno == EDQUOT || errno == EFBIG;
+  throw Error(no_room ? ErrorKind::kNoRoom : ErrorKind::kBadInput, path,
+              std::string("cannot write: ") + std::strerror(errno));
+}
+
+void make_folders(const std::string& path) {
+  std::error_code error;
+  fs::create_directories(path, error);
+  if (!error) return;
+  errno = error.value();
+  fail_to_write(path);
+}
+
+void write_file(const std::string& path, std::span<const std::byte> bytes) {
+  std::FILE* file = std::fopen(path.c_str(), "wb");
+  bool good = file != nullptr;
+  if (good) {
+    good = bytes.empty() || std::fwrite(bytes.data(), 1, bytes.size(), file) == bytes.size();
+    const int write_errno = errno;
+    if (std::fclose(file) != 0) {
+      good = false;
+    } else if (!good) {
+      errno = write_errno;
+    }
+  }
+  if (!good) fail_to_write(path);
+}
+
+void write_whole_file(const std::string& path, std::span<const std::byte> bytes) {
+  WholeFile file(path);
+  write_file(file.part(), bytes);
+  file.keep();
+}
+
+}  // namespace binderjet

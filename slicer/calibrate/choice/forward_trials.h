@@ -1,0 +1,32 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Effects that no regression of the residual can see, since they move no dose: layers that were
+// lost, gaps that were filled, edges that wore off. They are tried in the forward model itself, and
+// the printed voxels decide, cell by cell.
+#pragma once
+
+#include <vector>
+
+#include "slicer/calibrate/candidates/candidate.h"
+#include "slicer/calibrate/residual/surface.h"
+
+namespace binderjet {
+
+// The best of one kind.
+struct Trial {
+  Candidate candidate;  // without columns; its model is `model`
+  Model model;
+  double share = 0;          // of the wrong voxels that it takes away
+  double p = 1;              // family-wise, over all that was tried
+  bool folds_agree = false;  // along every axis it does not depend on (most_agree())
+};
+
+// Those that make the print of the chosen layers better, the best first.
+std::vector<Trial> try_effects(const MeasuredJob& job, const Model& model,
+                               const LayerChoice& layers);
+
+// The model with the numbers that name a place or a size of this effect (at_mm, from_mm, radius_mm,
+// ...) moved to where the chosen layers are printed best.
+Model with_places_fitted(const MeasuredJob& job, Model model, std::size_t effect,
+                         const LayerChoice& layers);
+
+}  // namespace binderjet

@@ -1,0 +1,79 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Least squares of the residual on candidates, cell by cell, so that folds and nulls are sums over
+// cells and no candidate is computed twice.
+#pragma once
+
+#include <Eigen/Dense>
+#include <array>
+#include <vector>
+
+#include "slicer/calibrate/candidates/candidate.h"
+#include "slicer/calibrate/residual/printed_error.h"
+#include "slicer/calibrate/residual/surface.h"
+
+namespace binderjet::regression {
+
+using Matrix = Eigen::MatrixXd;
+using Vector = Eigen::VectorXd;
+
+// What is needed of each point, computed once.
+struct Field {
+  std::vector<Spot> spots;
+  std::vector<float> residual;
+  std::vector<float> dose;
+  std::vector<double> margin;               // dose - level
+  std::array<std::vector<float>, 2> shift;  // dose per mm
+  std::vector<int> cell;                    // printed_error.h
+};
+Field field_of(const MeasuredJob& job, const Model& model, const std::vector<SurfacePoint>& points);
+
+// A candidate's column at each point.
+std::vector<float> values(const Column& column, const MeasuredJob& job, const Field& field,
+                          const std::vector<SurfacePoint>& points);
+
+// A candidate's normal equations, cell by cell, with what is known taken out.
+struct Normal {
+  std::vector<Matrix> gram;   // per cell
+  std::vector<Vector> right;  // per cell
+};
+
+// Columns of the known effects and their own normal equations. `columns` must outlive it.
+class Known {
+ public:
+  Known(const std::vector<std::vector<float>>& columns, const Field& field);
+
+  // The residual less what the known columns take of it.
+  const std::vector<float>& residual() const { return residual_; }
+  Normal normal(const std::vector<std::vector<float>>& columns, const Field& field) const;
+
+ private:
+  Vector at(std::size_t i) const;
+  static std::size_t cell(const Field& field, std::size_t i) {
+    return static_cast<std::size_t>(field.cell[i]);
+  }
+
+  const std::vector<std::vector<float>>& columns_;
+  Eigen::Index count_;
+  std::vector<float> residual_;
+  std::vector<Matrix> gram_;
+  std::vector<Vector> right_;
+  Eigen::LDLT<Matrix> solver_;
+};
+
+// A candidate fitted on all cells, and what it takes of each where the fit did not look.
+struct Tried {
+  bool usable = false;
+  Vector fit;
+  std::vector<double> gain;  // per cell, mean over the axes of the folds
+  double held_out = 0;       // sum of gain, as a share of the residual's power
+  bool folds_agree = false;
+  Matrix white;  // per cell, the right sides as they count in the gain: gain = |sum of columns|^2
+};
+
+// `power` is that of the residual.
+Tried attempt(const Candidate& candidate, const Normal& normal, double power);
+
+// How often a residual with the signs of its cells drawn at random looks as good to any candidate.
+double family_p(const std::vector<Tried>& tried, double best_gain);
+
+}  // namespace binderjet::regression

@@ -1,0 +1,71 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Slots and walls of a printed gauge: which show and how wide they came out, against the model; and
+// which single change of the model agrees with them.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "slicer/calibrate/gauges/gauge_strip.h"
+#include "slicer/calibrate/gauges/gauge_table.h"
+#include "slicer/layers/grid.h"
+#include "slicer/model/effects/effect.h"
+
+namespace binderjet {
+
+// What the gauge says about one axis, in mm: the width from which on slots (walls) show, or how
+// wide one of them came out.
+struct GaugeReading {
+  std::string name;  // "first visible slot in x", "wall of 0.5 mm in y"
+  GaugeKind kind = GaugeKind::kSlot;
+  int axis = 0;
+  double nominal_mm = 0;  // of a width; 0 for a first visible one
+  double measured_mm = 0;
+  double uncertainty_mm = 0;  // above 0
+};
+
+// Two forms, by columns:
+//  axis, first_visible_slot_mm_low, first_visible_slot_mm_high (paper, Fig. 3): an observer saw
+//  slots
+//   from there on, on a block with slots 0.1 mm apart;
+//  gauge (slot or wall), axis, nominal_mm, and visible (0 or 1) or measured_mm, uncertainty_mm.
+bool has_slots(const GaugeTable& table);
+// Error{kBadInput} with file:line.
+std::vector<GaugeReading> read_slots(const GaugeTable& table);
+
+// A change of one number that could explain the readings.
+struct Explanation {
+  std::string kind;  // "threshold", "kernel_x" ... of the effect catalogue
+  std::string text;  // "level 0.15 instead of 0.5"
+  double value = 0;  // the number that fits best
+  double low = 0;    // it may be from here
+  double high = 0;   // to here: all readings within their uncertainty, or as near as the best
+  std::vector<EffectSpec> effects;   // the model with it
+  std::vector<double> predicted_mm;  // per reading
+  double rms_mm = 0;                 // of measured - predicted
+  // The same where each reading is predicted with the value that fits the others best.
+  double heldout_rms_mm = 0;
+  bool agrees = false;  // with every reading, within its uncertainty
+  int changed_numbers = 0;
+};
+
+// A gauge on which two explanations differ, both as the model predicts it.
+struct Discriminator {
+  std::string gauge;                 // "outer width of 10 mm in x"
+  std::vector<double> predicted_mm;  // per explanation; 0: it vanishes or is closed
+  double difference_mm = 0;
+};
+
+struct SlotFindings {
+  std::vector<GaugeReading> readings;
+  std::vector<double> declared_mm;  // what the declared model predicts, per reading
+  double declared_rms_mm = 0;
+  bool declared_agrees = false;
+  std::vector<Explanation> explanations;      // that agree, or else the best; best first
+  std::vector<Discriminator> discriminators;  // between the first two, largest difference first
+};
+
+SlotFindings trace_slots(std::vector<GaugeReading> readings,
+                         const std::vector<EffectSpec>& declared, const Grid& grid);
+
+}  // namespace binderjet

@@ -1,0 +1,206 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "slicer/enhance/inverse/repair/stretch.h"
+
+#include <algorithm>
+#include <array>
+#include <memory>
+#include <utility>
+
+#include "slicer/enhance/inverse/repair/mask_patch.h"
+#include "slicer/enhance/inverse/search/layer_sets.h"
+#include "slicer/score/pieces.h"
+#include "slicer/voxels/any_slice.h"
+
+namespace binderjet {
+namespace {
+
+// What a fault weighs, in voxels: a piece that comes off spoils a part; a feature spoils itself.
+constexpr std::int64_t kPieceWeight = 1000;
+constexpr std::int64_t kFeatureWeight = 500;
+
+std::size_t at(int layer) { return static_cast<std::size_t>(layer); }
+
+}  // namespace
+
+PrintedLayer with_print(const SearchModel& by, LayerWindow layers) {
+  const Shared<InverseLayer>& layer = layers[layers.size() / 2];
+  return {layer, std::make_shared<const RunLayer>(print_with(layers, 0, by.printer, *layer->mask)),
+          nullptr};
+}
+
+PrintedLayer with_features(const SearchModel& by, std::span<const Shared<PrintedLayer>> three) {
+  std::array<ComparedLayer, 3> compared;
+  std::array<const ComparedLayer*, 3> seen{};
+  for (std::size_t i = 0; i < 3; ++i) {
+    if (three[i] == nullptr) continue;
+    compared[i] = {three[i]->layer->target, three[i]->printed};
+    seen[i] = &compared[i];
+  }
+  PrintedLayer out = *three[1];
+  out.gone =
+      std::make_shared<const LayerFeatures>(find_features(seen[0], compared[1], seen[2], by.grid));
+  return out;
+}
+
+Stretch::Stretch(const SearchModel& by, Layers layers, int job_layers)
+    : by_(&by),
+      layers_(std::move(layers)),
+      box_{0, 0, printed(0).width(), printed(0).height()},
+      whole_(box_),
+      open_below_(layer(0).number > 0),
+      open_above_(layer(count() - 1).number + 1 < job_layers),
+      faults_(faults_of(layers_)) {}
+
+// What reaches an end may go on beyond it, where nobody looks.
+bool Stretch::goes_on(const Region& region) const {
+  const int slices = count() * by_->grid.detail_vx[2];
+  return (open_below_ && region.low[2] == 0) || (open_above_ && region.high[2] == slices) ||
+         (box_.x0 > whole_.x0 && region.low[0] <= box_.x0) ||
+         (box_.y0 > whole_.y0 && region.low[1] <= box_.y0) ||
+         (box_.x1 < whole_.x1 && region.high[0] >= box_.x1) ||
+         (box_.y1 < whole_.y1 && region.high[1] >= box_.y1);
+}
+
+// As `score` finds them.
+Stretch::Faults Stretch::faults_of(const Layers& layers) const {
+  const int rz = by_->grid.detail_vx[2];
+  RegionFinder lost;
+  RegionFinder fused;
+  RegionFinder printed;
+  PieceCounter pieces;
+  Faults faults;
+  const auto add = [&](const std::vector<Region>& more, std::int64_t weight_each) {
+    for (const Region& region : more) {
+      faults.regions.push_back(region);
+      faults.weight += weight_each + region.voxels;
+    }
+  };
+  const auto add_spurious = [&](std::vector<Region> more) {
+    for (Region& region : more) region = in_slices(region, rz);
+    std::erase_if(more, [&](const Region& region) { return region.touches || goes_on(region); });
+    add(more, kFeatureWeight);
+  };
+  for (const Shared<PrintedLayer>& layer : layers) {
+    for (const RunLayer& slice : layer->gone->lost) add(lost.add(slice), kFeatureWeight);
+    for (const RunLayer& slice : layer->gone->fused) add(fused.add(slice), kFeatureWeight);
+    const RunLayer wanted = any_slice(*layer->layer->target);
+    add_spurious(printed.add(*layer->printed, &wanted));
+    pieces.add(*layer->layer->target, *layer->printed);
+  }
+  add(lost.finish(), kFeatureWeight);
+  add(fused.finish(), kFeatureWeight);
+  add_spurious(printed.finish());
+  add(pieces.loose_pieces([&](const Region& region) { return goes_on(region); }), kPieceWeight);
+  return faults;
+}
+
+RunLayer Stretch::print(const Layers& layers, int k, Shared<RunLayer> InverseLayer::*mask) const {
+  const int reach = by_->printer.window_reach();
+  std::vector<const RunLayer*> masks;
+  for (int near = k - reach; near <= k + reach; ++near) {
+    const bool inside = near >= 0 && near < static_cast<int>(layers.size());
+    masks.push_back(inside ? ((*layers[at(near)]->layer).*mask).get() : nullptr);
+  }
+  return by_->printer.print(masks, layers[at(k)]->layer->number);
+}
+
+void Stretch::look_at(Layers& layers, int k) const {
+  const auto beside = [&](int near) {
+    return near < 0 || near >= static_cast<int>(layers.size()) ? nullptr : layers[at(near)];
+  };
+  const std::array three{beside(k - 1), layers[at(k)], beside(k + 1)};
+  layers[at(k)] = std::make_shared<const PrintedLayer>(with_features(*by_, three));
+}
+
+std::int64_t Stretch::most_wrong(int k) {
+  const auto known = most_wrong_.find(k);
+  if (known != most_wrong_.end()) return known->second;
+  const RunLayer plain = print(layers_, k, &InverseLayer::plain);
+  return most_wrong_[k] =
+             std::max(wrong_voxels(layer(k), printed(k)), wrong_voxels(layer(k), plain));
+}
+
+Stretch Stretch::cut(const Rect& pixels, LayerRange range) {
+  const auto [rx, ry, rz] = by_->grid.detail_vx;
+  const std::array in_pixels{pixels};
+  const std::array in_voxels{Rect{pixels.x0 * rx, pixels.y0 * ry, pixels.x1 * rx, pixels.y1 * ry}};
+  const auto part_of = [](const RunLayer& of, std::span<const Rect> places) {
+    return std::make_shared<const RunLayer>(within(of, places));
+  };
+  Stretch out = *this;
+  out.layers_.clear();
+  out.most_wrong_.clear();
+  out.box_ = in_voxels[0];
+  out.open_below_ = open_below_ || range.first > 0;
+  out.open_above_ = open_above_ || range.last < count();
+  for (int k = range.first; k < range.last; ++k) {
+    InverseLayer part = layer(k);
+    VoxelLayer target;
+    for (const RunLayer& slice : part.target->slices) {
+      target.slices.push_back(within(slice, in_voxels));
+    }
+    part.target = std::make_shared<const VoxelLayer>(std::move(target));
+    part.plain = part_of(*part.plain, in_pixels);
+    part.mask = part_of(*part.mask, in_pixels);
+    out.layers_.push_back(std::make_shared<const PrintedLayer>(
+        std::make_shared<const InverseLayer>(std::move(part)), nullptr, nullptr));
+  }
+  for (int k = 0; k < out.count(); ++k) {
+    PrintedLayer part = *out.layers_[at(k)];
+    part.printed = std::make_shared<const RunLayer>(out.print(out.layers_, k, &InverseLayer::mask));
+    // The whole layer may still get as much worse.
+    const int here = k + range.first;
+    out.most_wrong_[k] = most_wrong(here) - wrong_voxels(layer(here), printed(here)) +
+                         wrong_voxels(*part.layer, *part.printed);
+    out.layers_[at(k)] = std::make_shared<const PrintedLayer>(std::move(part));
+  }
+  for (int k = 0; k < out.count(); ++k) out.look_at(out.layers_, k);
+  out.faults_ = out.faults_of(out.layers_);
+  return out;
+}
+
+RunLayer Stretch::filling(const Patch& patch, const InverseLayer& of) const {
+  switch (patch.filling) {
+    case Patch::Filling::plain:
+      return *of.plain;
+    case Patch::Filling::with_plain:
+      return either(*of.mask, *of.plain);
+    case Patch::Filling::common_with_plain:
+      return common(*of.mask, *of.plain);
+    case Patch::Filling::copy:
+      break;
+  }
+  return *layer(patch.copied).mask;
+}
+
+bool Stretch::take(const Patch& patch) {
+  Layers next = layers_;
+  const std::array places{patch.pixels};
+  for (int k = patch.layers.first; k < patch.layers.last; ++k) {
+    InverseLayer changed = layer(k);
+    changed.mask = std::make_shared<const RunLayer>(
+        patched(*changed.mask, filling(patch, changed), places, by_->rules));
+    next[at(k)] = std::make_shared<const PrintedLayer>(
+        std::make_shared<const InverseLayer>(std::move(changed)), nullptr, nullptr);
+  }
+  const LayerRange prints = grown(patch.layers, by_->printer.window_reach(), count());
+  for (int k = prints.first; k < prints.last; ++k) {
+    auto print_of = std::make_shared<const RunLayer>(print(next, k, &InverseLayer::mask));
+    if (wrong_voxels(layer(k), *print_of) > most_wrong(k)) return false;
+    next[at(k)] = std::make_shared<const PrintedLayer>(next[at(k)]->layer, std::move(print_of),
+                                                       layers_[at(k)]->gone);
+  }
+  const LayerRange seen = grown(prints, 1, count());
+  for (int k = seen.first; k < seen.last; ++k) {
+    // The ends lack a neighbour, but keep what was seen with it.
+    const bool at_end = (k == 0 && open_below_) || (k == count() - 1 && open_above_);
+    if (!at_end) look_at(next, k);
+  }
+  Faults now = faults_of(next);
+  if (now.weight >= faults_.weight) return false;
+  layers_ = std::move(next);
+  faults_ = std::move(now);
+  return true;
+}
+
+}  // namespace binderjet

@@ -1,0 +1,81 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "slicer/enhance/inverse/search/inverse_layer.h"
+
+#include <algorithm>
+#include <vector>
+
+#include "slicer/score/voxel_counts.h"
+
+namespace binderjet {
+namespace {
+
+template <class MaskOf>
+std::vector<const RunLayer*> gather(LayerWindow layers, int offset, const PrinterModel& model,
+                                    MaskOf mask_of) {
+  std::vector<const RunLayer*> masks;
+  for (int near = offset - model.window_reach(); near <= offset + model.window_reach(); ++near) {
+    const InverseLayer* layer = layer_at(layers, near);
+    masks.push_back(layer == nullptr ? nullptr : mask_of(*layer, near));
+  }
+  return masks;
+}
+
+template <class MaskOf>
+RunLayer print(LayerWindow layers, int offset, const PrinterModel& model, MaskOf mask_of) {
+  return model.print(gather(layers, offset, model, mask_of), layer_at(layers, 0)->number + offset);
+}
+
+}  // namespace
+
+const InverseLayer* layer_at(LayerWindow layers, int offset) {
+  const int at = static_cast<int>(layers.size()) / 2 + offset;
+  return at < 0 || at >= static_cast<int>(layers.size())
+             ? nullptr
+             : layers[static_cast<std::size_t>(at)].get();
+}
+
+ModelOffsets offsets_of(const ModelForm& form) {
+  ModelOffsets offsets;
+  for (const DoseTerm& term : form.terms) offsets.printed.insert(-term.layer);
+  for (const int printed : offsets.printed) {
+    for (const DoseTerm& term : form.terms) offsets.masks.insert(printed + term.layer);
+  }
+  return offsets;
+}
+
+std::vector<const RunLayer*> masks_around(LayerWindow layers, int offset,
+                                          const PrinterModel& model) {
+  return gather(layers, offset, model,
+                [](const InverseLayer& layer, int) { return layer.mask.get(); });
+}
+
+RunLayer print_plain(LayerWindow layers, int offset, const PrinterModel& model) {
+  return print(layers, offset, model,
+               [](const InverseLayer& layer, int) { return layer.plain.get(); });
+}
+
+RunLayer print_with(LayerWindow layers, int offset, const PrinterModel& model,
+                    const RunLayer& own) {
+  return print(layers, offset, model, [&own](const InverseLayer& layer, int at) {
+    return at == 0 ? &own : layer.mask.get();
+  });
+}
+
+std::int64_t wrong_voxels(const InverseLayer& layer, const RunLayer& printed) {
+  const VoxelCounts counts = count_voxels(*layer.target, printed);
+  return counts.missing + counts.extra;
+}
+
+bool no_worse_than_plain(LayerWindow layers, const PrinterModel& model, const ModelOffsets& offsets,
+                         const RunLayer& own) {
+  return std::all_of(offsets.printed.begin(), offsets.printed.end(), [&](int offset) {
+    const InverseLayer* layer = layer_at(layers, offset);
+    if (layer == nullptr) return true;
+    const std::int64_t now = wrong_voxels(*layer, print_with(layers, offset, model, own));
+    if (now <= wrong_voxels(*layer, print_plain(layers, offset, model))) return true;
+    const RunLayer& before = *layer_at(layers, 0)->mask;
+    return now <= wrong_voxels(*layer, print_with(layers, offset, model, before));
+  });
+}
+
+}  // namespace binderjet

@@ -1,0 +1,35 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The solid share of the masks in a box around a place: dense parts keep their binder wet.
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "slicer/layers/grid.h"
+#include "slicer/layers/run_layer.h"
+
+namespace binderjet {
+
+// Of one layer. The masks are counted in cells of kCellPx x kCellPx pixels, so that memory is
+// small beside a layer's own; between the middles of cells the share is interpolated.
+class DensityField {
+ public:
+  static constexpr int kCellPx = 4;
+
+  // `window` holds the masks of all layers that count, each the same; null is powder. `radius_mm`
+  // is half the box's width in x and y.
+  DensityField(std::span<const RunLayer* const> window, const Grid& grid, double radius_mm);
+
+  // At a place in voxels from the masks' lower corner; 0 to 1.
+  double at(double x_vx, double y_vx) const;
+
+ private:
+  double cell(int i, int j) const;
+
+  std::array<int, 2> cells_{};
+  std::array<double, 2> cell_vx_{};
+  std::vector<float> share_;
+};
+
+}  // namespace binderjet

@@ -1,0 +1,13 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "slicer/model/effects/jitter.h"
+
+#include "slicer/model/printer_model.h"
+
+namespace binderjet {
+
+EffectKind jitter_kind() {
+  return {
+      "jitter", {}, {{"sigma_mm", 2, -1e-9, 5}}, [](const EffectSpec&, const Grid&, ModelForm&) {}};
+}
+
+}  // namespace binderjet

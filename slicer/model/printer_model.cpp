@@ -1,0 +1,181 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "slicer/model/printer_model.h"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "slicer/base/error.h"
+#include "slicer/model/wear/opening.h"
+
+namespace binderjet {
+namespace {
+
+ModelForm form_of(const std::vector<EffectSpec>& effects, const Grid& grid, const JobPlace& place) {
+  ModelForm form;
+  form.place = place;
+  for (const EffectSpec& effect : effects) find_effect_kind(effect.kind)->add(effect, grid, form);
+  return form;
+}
+
+}  // namespace
+
+void ModelForm::bind_at(double new_level) {
+  if (level > 0) {
+    throw Error(ErrorKind::kBadInput, "effects",
+                "powder is bound at two levels; keep one threshold or fill");
+  }
+  level = new_level;
+}
+
+void ModelForm::shift(std::function<std::array<double, 2>(const Spot&)> by_mm,
+                      const std::array<double, 2>& most_mm) {
+  placed.shifts.push_back({std::move(by_mm), std::max(std::abs(most_mm[0]), std::abs(most_mm[1]))});
+}
+
+void ModelForm::ask_density(double radius_mm) {
+  if (placed.density_radius_mm && *placed.density_radius_mm != radius_mm) {
+    throw Error(ErrorKind::kBadInput, "effects", "density is asked for with two radii; keep one");
+  }
+  placed.density_radius_mm = radius_mm;
+}
+
+Reach ModelForm::reach(const Grid& grid) const {
+  Reach reach;
+  for (const DoseTerm& term : terms) {
+    reach.xy_vx[0] = std::max({reach.xy_vx[0], -term.x.first, term.x.last()});
+    reach.xy_vx[1] = std::max({reach.xy_vx[1], -term.y.first, term.y.last()});
+    reach.layers_below = std::max(reach.layers_below, -term.layer);
+    reach.layers_above = std::max(reach.layers_above, term.layer);
+  }
+  for (const std::array<int, 2>& box : survive_vx) {
+    for (std::size_t axis = 0; axis < 2; ++axis) reach.xy_vx[axis] += box[axis] - 1;
+  }
+  for (int axis = 0; axis < 2 && !placed.shifts.empty(); ++axis) {
+    reach.xy_vx[static_cast<std::size_t>(axis)] += placed.most_shift_vx(grid, axis);
+  }
+  reach.layers_below = std::max(reach.layers_below, placed.density_layers(grid));
+  reach.layers_above = std::max(reach.layers_above, placed.density_layers(grid));
+  for (const Wear& step : wear) {
+    for (std::size_t axis = 0; axis < 2; ++axis) reach.xy_vx[axis] += step.reach.xy_vx[axis];
+    reach.layers_below += step.reach.layers_below;
+    reach.layers_above += step.reach.layers_above;
+  }
+  for (const LayerMove& move : moves) {
+    reach.layers_below += move.most;
+    reach.layers_above += move.most;
+  }
+  return reach;
+}
+
+ModelForm::Received ModelForm::received(std::span<const RunLayer* const> window, int layer) const {
+  Received out{{window.begin(), window.end()}, nullptr};
+  if (moves.empty()) return out;
+  const int count = static_cast<int>(window.size());
+  for (int i = 0; i < count; ++i) {
+    int from = i;
+    for (const LayerMove& move : moves) from += move.by(layer + i - count / 2);
+    out.masks[static_cast<std::size_t>(i)] =
+        from < 0 || from >= count ? nullptr : window[static_cast<std::size_t>(from)];
+  }
+  const std::size_t middle = window.size() / 2;
+  if (out.masks[middle] == nullptr && window[middle] != nullptr) {
+    out.powder = std::make_shared<const RunLayer>(
+        RunLayer::powder(window[middle]->width(), window[middle]->height()));
+    out.masks[middle] = out.powder.get();
+  }
+  return out;
+}
+
+PrinterModel::PrinterModel(const std::vector<EffectSpec>& effects, const Grid& grid,
+                           const JobPlace& place)
+    : PrinterModel(form_of(effects, grid, place), grid, place) {}
+
+PrinterModel::PrinterModel(ModelForm form, const Grid& grid, const JobPlace& place)
+    : repeat_{grid.detail_vx[0], grid.detail_vx[1]},
+      form_(std::move(form)),
+      reach_(form_.reach(grid)) {
+  form_.place = place;
+  if (form_.level <= 0) {
+    throw Error(ErrorKind::kBadInput, "effects",
+                "nothing binds powder: the model needs a threshold or a fill");
+  }
+  choose_filter(grid, place);
+}
+
+void PrinterModel::choose_filter(const Grid& grid, const JobPlace& place) {
+  const DoseTerm& first = form_.terms.front();
+  const auto x = as_box(first.x);
+  const auto y = as_box(first.y);
+  const PlacedDose& placed = form_.placed;
+  const bool anywhere = placed.gains.empty() && placed.shifts.empty() && placed.weak_drops.empty();
+  if (form_.terms.size() == 1 && first.layer == 0 && first.gain == 1 && x && y && anywhere) {
+    filter_ = OneBox{*x, *y, least_sum(*x, *y, form_.level)};
+  } else {
+    filter_.emplace<DoseFilter>(form_.terms, form_.level, grid, form_.placed, place);
+  }
+}
+
+RunLayer PrinterModel::bind(std::span<const RunLayer* const> window, int layer) const {
+  const ModelForm::Received masks = form_.received(window, layer);
+  const auto* box = std::get_if<OneBox>(&filter_);
+  RunLayer printed = box != nullptr ? box_threshold(*masks.masks[masks.masks.size() / 2], repeat_,
+                                                    box->x, box->y, box->least)
+                                    : std::get<DoseFilter>(filter_)(masks.masks, layer);
+  for (const std::array<int, 2>& least : form_.survive_vx) printed = opening(printed, least);
+  return printed;
+}
+
+int PrinterModel::wear_reach() const {
+  int reach = 0;
+  for (const Wear& step : form_.wear) reach += step.reach.layers_below;
+  return reach;
+}
+
+RunLayer PrinterModel::worn(std::span<const RunLayer* const> bound) const {
+  std::vector<const RunLayer*> layers(bound.begin(), bound.end());
+  std::vector<RunLayer> done;
+  for (const Wear& step : form_.wear) {
+    const auto span = 2 * static_cast<std::size_t>(step.reach.layers_below) + 1;
+    const std::size_t count = layers.size() - span + 1;
+    std::vector<RunLayer> next(count);
+    std::vector<const RunLayer*> next_layers(count, nullptr);
+    for (std::size_t first = 0; first < count; ++first) {
+      if (layers[first + span / 2] == nullptr) continue;
+      next[first] = step.apply(std::span<const RunLayer* const>(layers).subspan(first, span));
+      next_layers[first] = &next[first];
+    }
+    done = std::move(next);
+    layers = std::move(next_layers);
+  }
+  return std::move(done.front());
+}
+
+RunLayer PrinterModel::print(std::span<const RunLayer* const> window, int layer) const {
+  const int around = wear_reach();
+  const auto count = 2 * static_cast<std::size_t>(bind_reach()) + 1;
+  if (form_.wear.empty()) return bind(window, layer);
+  std::vector<RunLayer> bound(2 * static_cast<std::size_t>(around) + 1);
+  std::vector<const RunLayer*> layers(bound.size(), nullptr);
+  for (std::size_t i = 0; i < bound.size(); ++i) {
+    const auto part = window.subspan(i, count);
+    if (part[count / 2] == nullptr) continue;
+    bound[i] = bind(part, layer + static_cast<int>(i) - around);
+    layers[i] = &bound[i];
+  }
+  return worn(layers);
+}
+
+RunLayer PrinterModel::print(std::span<const Shared<RunLayer>> window, int layer) const {
+  std::vector<const RunLayer*> masks;
+  for (const Shared<RunLayer>& mask : window) masks.push_back(mask.get());
+  return print(masks, layer);
+}
+
+RunLayer PrinterModel::print(const RunLayer& mask) const {
+  std::vector<const RunLayer*> window(2 * static_cast<std::size_t>(window_reach()) + 1, nullptr);
+  window[window.size() / 2] = &mask;
+  return print(window);
+}
+
+}  // namespace binderjet

@@ -1,0 +1,122 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "slicer/model/wear/morphology.h"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+#include <vector>
+
+#include "slicer/layers/rows.h"
+
+namespace binderjet {
+namespace {
+
+// A row with each run made wider by `by` at both ends, or narrower where `by` is negative.
+void grown(rows::Row row, int by, int width, std::vector<int>& out) {
+  out.clear();
+  for (std::size_t i = 0; i < row.size(); i += 2) {
+    const int first = std::max(0, row[i] - by);
+    const int last = std::min(width, row[i + 1] + by);
+    if (first >= last) continue;
+    if (!out.empty() && first <= out.back()) {
+      out.back() = last;
+    } else {
+      out.push_back(first);
+      out.push_back(last);
+    }
+  }
+}
+
+// A row that the ellipsoid reaches from its centre, and how far it goes there to either side.
+struct Neighbour {
+  int dy;
+  int dz;
+  int half;
+};
+
+std::vector<Neighbour> neighbours(const Ellipsoid& by) {
+  const auto [rx, ry, rz] = by.reach();
+  std::vector<Neighbour> out;
+  for (int dz = -rz; dz <= rz; ++dz) {
+    for (int dy = -ry; dy <= ry; ++dy) {
+      const int half = by.half_width(dy, dz);
+      if (half >= 0) out.push_back({dy, dz, half});
+    }
+  }
+  return out;
+}
+
+// The middle layer, each of whose rows takes in every row that the ellipsoid reaches from it:
+// `take`(row so far, layer or null where there is none, y, half width of the ellipsoid there).
+template <class Take>
+RunLayer over_neighbours(std::span<const RunLayer* const> window, const Ellipsoid& by,
+                         const Take& take) {
+  const std::vector<Neighbour> reached = neighbours(by);
+  const int middle_z = static_cast<int>(window.size() / 2);
+  const RunLayer& middle = *window[window.size() / 2];
+  RunLayer out(middle.width());
+  std::vector<int> runs;
+  for (int y = 0; y < middle.height(); ++y) {
+    runs.assign(middle.row(y).begin(), middle.row(y).end());
+    for (const auto& [dy, dz, half] : reached)
+      take(runs, window[static_cast<std::size_t>(middle_z + dz)], y + dy, half);
+    out.append_row(runs);
+  }
+  return out;
+}
+
+}  // namespace
+
+Ellipsoid::Ellipsoid(double radius_mm, const Grid& grid)
+    : radius_{radius_mm / grid.voxel_mm(0), radius_mm / grid.voxel_mm(1),
+              radius_mm / grid.pitch_mm[2]} {
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    // A radius of whole voxels in decimal millimetres is that many but for rounding.
+    constexpr double kRounding = 1e-9;
+    reach_[axis] = static_cast<int>(std::floor(radius_[axis] + kRounding));
+  }
+}
+
+Ellipsoid Ellipsoid::disc(double radius_mm, const Grid& grid) {
+  Ellipsoid out(radius_mm, grid);
+  out.reach_[2] = 0;
+  return out;
+}
+
+int Ellipsoid::half_width(int dy, int dz) const {
+  const double v = dy / radius_[1];
+  const double w = dz / radius_[2];
+  const double left = 1 - v * v - w * w;
+  constexpr double kRounding = 1e-9;
+  return left < -kRounding ? -1
+                           : static_cast<int>(std::floor(
+                                 radius_[0] * std::sqrt(std::max(0.0, left)) + kRounding));
+}
+
+RunLayer dilated(std::span<const RunLayer* const> window, const Ellipsoid& by) {
+  std::vector<int> row;
+  std::vector<int> next;
+  return over_neighbours(window, by,
+                         [&](std::vector<int>& runs, const RunLayer* layer, int y, int half) {
+                           if (layer == nullptr || layer->row(y).empty()) return;
+                           grown(layer->row(y), half, layer->width(), row);
+                           rows::unite(runs, row, next);
+                           std::swap(runs, next);
+                         });
+}
+
+RunLayer eroded(std::span<const RunLayer* const> window, const Ellipsoid& by, Beyond beyond) {
+  const int width = window[window.size() / 2]->width();
+  std::vector<int> row;
+  std::vector<int> next;
+  return over_neighbours(window, by,
+                         [&](std::vector<int>& runs, const RunLayer* layer, int y, int half) {
+                           if (runs.empty() || (layer == nullptr && beyond == Beyond::kSame))
+                             return;
+                           grown(layer == nullptr ? rows::Row{} : layer->row(y), -half, width, row);
+                           rows::intersect(runs, row, next);
+                           std::swap(runs, next);
+                         });
+}
+
+}  // namespace binderjet

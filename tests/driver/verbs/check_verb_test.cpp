@@ -1,0 +1,144 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// check finds, in a part made for it, what the printer will do to it, and where.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "tests/support/models.h"
+#include "tests/support/program.h"
+
+namespace binderjet {
+namespace {
+
+using models::box;
+using testing::HasSubstr;
+
+class CheckVerb : public testing::Test {
+ protected:
+  nlohmann::json check(const Mesh& mesh, const std::vector<std::string>& more = {}) const {
+    models::write_obj(mesh, here_ / "part.obj");
+    std::vector<std::string> words = {
+        "check", here_ / "part.obj", "-p", "z450", "--enhance", "none", "--at", "50,50"};
+    words.insert(words.end(), more.begin(), more.end());
+    words.emplace_back("--json");
+    const Ran ran = here_.run(words);
+    EXPECT_EQ(ran.status, 0) << ran.err;
+    return ran.json();
+  }
+  // The one thing of a kind that was found.
+  static nlohmann::json only(const nlohmann::json& said, const std::string& kind) {
+    std::vector<nlohmann::json> all;
+    for (const auto& found : said["found"]) {
+      if (found["kind"] == kind) all.push_back(found);
+    }
+    EXPECT_EQ(all.size(), 1) << kind;
+    return all.empty() ? nlohmann::json() : all.front();
+  }
+  Workplace here_;
+};
+
+// A block of 10 x 10 x 4 mm with a fin on it, a slot in it and a hollow in it, as asked.
+Mesh block(double fin_mm, double slot_mm, bool hollow) {
+  Mesh mesh = box({0, 0, 0}, {10, 10, 4});
+  if (fin_mm > 0) mesh = models::joined(mesh, box({2, 2, 4}, {2 + fin_mm, 8, 7}));
+  if (slot_mm > 0) {
+    mesh = models::joined(mesh, box({-4 - slot_mm, 0, 0}, {-slot_mm, 10, 4}));
+  }
+  if (hollow) mesh = models::joined(mesh, models::inside_out(box({3, 3, 1}, {7, 7, 3})));
+  return mesh;
+}
+
+TEST_F(CheckVerb, HasNothingToSayOfASolidBlock) {
+  const nlohmann::json said = check(block(0, 0, false));
+  EXPECT_EQ(said["verdict"], "prints as it is");
+  EXPECT_TRUE(said["found"].empty());
+  EXPECT_NEAR(said["powder_ml"].get<double>(), 0.4, 0.01);
+  EXPECT_NEAR(said["binder_ml"].get<double>(), 0.4 * 0.36, 0.01);
+  EXPECT_NEAR(said["print_minutes"].get<double>(), 90 + 40 / 3.0, 1);  // 40 layers, 3 a minute
+}
+
+TEST_F(CheckVerb, NamesAFinThatVanishesWithItsPlaceAndSize) {
+  const nlohmann::json said = check(block(0.2, 0, false));
+  EXPECT_EQ(said["lost"], 1);
+  EXPECT_EQ(said["verdict"], "loses detail");
+  const auto& fin = said["found"][0];
+  EXPECT_EQ(fin["kind"], "lost");
+  EXPECT_NEAR(fin["at_mm"][0].get<double>(), 52.1, 0.1);
+  EXPECT_NEAR(fin["at_mm"][1].get<double>(), 55, 0.1);
+  EXPECT_NEAR(fin["size_mm"][1].get<double>(), 6, 0.3);
+  EXPECT_NEAR(fin["layers"][1].get<int>(), 7 / 0.102, 2);
+}
+
+TEST_F(CheckVerb, LeavesAFinThatIsThickEnough) {
+  EXPECT_EQ(check(block(1.5, 0, false))["lost"], 0);
+}
+
+TEST_F(CheckVerb, NamesASlotThatCloses) {
+  EXPECT_EQ(check(block(0, 0.2, false))["fused"], 1);
+  EXPECT_EQ(check(block(0, 1.5, false))["fused"], 0);
+}
+
+TEST_F(CheckVerb, NamesAPocketThatKeepsItsPowder) {
+  const nlohmann::json said = check(block(0, 0, true));
+  EXPECT_EQ(said["trapped"], 1);
+  const auto& pocket = said["found"][0];
+  EXPECT_EQ(pocket["kind"], "trapped");
+  EXPECT_NEAR(pocket["volume_mm3"].get<double>(), 32, 2);
+}
+
+TEST_F(CheckVerb, NamesTheJointOfTwoPartsThatPrintAsOne) {
+  // Two bars that are 0.15 mm apart, between y = 4 and 6 only.
+  Mesh bars = models::joined(box({0, 0, 0}, {3, 10, 2}), box({3.15, 4, 0}, {6, 6, 2}));
+  const nlohmann::json said = check(bars);
+  EXPECT_EQ(said["touching"], 1);
+  EXPECT_EQ(said["verdict"], "loses detail");
+  const auto& joint = only(said, "touching");
+  EXPECT_NEAR(joint["at_mm"][0].get<double>(), 53.07, 0.1);
+  EXPECT_NEAR(joint["at_mm"][1].get<double>(), 55, 0.1);
+  EXPECT_NEAR(joint["size_mm"][0].get<double>(), 0.15, 0.06);
+  EXPECT_NEAR(joint["size_mm"][1].get<double>(), 2, 0.15);
+  EXPECT_EQ(joint["layers"], nlohmann::json({0, 20}));
+  EXPECT_EQ(
+      check(models::joined(box({0, 0, 0}, {3, 10, 2}), box({5, 4, 0}, {8, 6, 2})))["touching"], 0);
+}
+
+TEST_F(CheckVerb, NamesAPieceThatComesOff) {
+  // Two blocks on a neck of 0.05 mm, which does not print.
+  const Mesh blocks = models::joined(box({0, 0, 0}, {4, 4, 2}), box({6, 0, 0}, {9, 4, 2}));
+  const nlohmann::json said =
+      check(models::joined(blocks, box({3.9, 1.97, 0.5}, {6.1, 2.02, 1.5})));
+  EXPECT_EQ(said["separated"], 1);
+  const auto& piece = only(said, "separated");  // the lesser
+  EXPECT_NEAR(piece["at_mm"][0].get<double>(), 57.5, 0.15);
+  EXPECT_NEAR(piece["size_mm"][0].get<double>(), 3, 0.2);
+  EXPECT_EQ(piece["layers"], nlohmann::json({0, 20}));
+  EXPECT_EQ(check(models::joined(blocks, box({3.9, 0, 0}, {6.1, 4, 2})))["separated"], 0);
+}
+
+TEST_F(CheckVerb, NamesTheLikelyUnitOfAPartThatIsTooSmallOrTooLarge) {
+  models::write_obj(box({0, 0, 0}, {0.14, 0.22, 0.19}), here_ / "metres.obj");
+  const Ran metres = here_.run({"check", here_ / "metres.obj", "-p", "z450", "--json"});
+  EXPECT_EQ(metres.status, 0);
+  EXPECT_EQ(metres.json()["verdict"], "doubtful size");
+  EXPECT_THAT(metres.err,
+              HasSubstr("probably in metres: say --units m (140.0 x 220.0 x 190.0 mm)"));
+
+  models::write_obj(box({0, 0, 0}, {0.01, 0.01, 0.01}), here_ / "dust.obj");
+  const Ran dust = here_.run({"check", here_ / "dust.obj", "-p", "z450", "--json"});
+  EXPECT_EQ(dust.json()["verdict"], "nothing to print");
+
+  models::write_obj(box({0, 0, 0}, {4572, 305, 2438}), here_ / "large.obj");
+  const Ran large = here_.run({"check", here_ / "large.obj", "-p", "z450"});
+  EXPECT_EQ(large.status, 3);
+  EXPECT_THAT(large.err, HasSubstr("does not fit the bed"));
+  EXPECT_THAT(large.err, HasSubstr("--units um (4.57 x 0.305 x 2.44 mm)"));
+}
+
+TEST_F(CheckVerb, SaysWhereToAPerson) {
+  models::write_obj(block(0.2, 0, false), here_ / "part.obj");
+  const Ran ran = here_.run({"check", here_ / "part.obj", "-p", "z450", "--enhance", "none"});
+  EXPECT_THAT(ran.out, HasSubstr("1 feature vanishes"));
+  EXPECT_THAT(ran.out, HasSubstr("verdict: loses detail"));
+}
+
+}  // namespace
+}  // namespace binderjet

@@ -1,0 +1,14 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Front end for a real kernel: the emulated device as a USB/IP export, for `usbip attach`.
+#pragma once
+
+#include <atomic>
+
+#include "tests/printer/emulator/usb_device.h"
+
+namespace binderjet {
+
+// Serves one host after the other on 127.0.0.1:`port` until `stop`. False if the port is taken.
+bool serve_usbip(UsbDevice& device, int port, const std::atomic<bool>& stop);
+
+}  // namespace binderjet

@@ -1,0 +1,70 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Where a print falls apart that the target holds together.
+#include "slicer/enhance/inverse/search/breaks.h"
+
+#include <gtest/gtest.h>
+
+#include <array>
+#include <memory>
+
+namespace binderjet {
+namespace {
+
+constexpr int kWidth = 20;
+
+RunLayer rows_of(std::initializer_list<std::vector<int>> rows) {
+  RunLayer layer(kWidth);
+  for (const std::vector<int>& row : rows) layer.append_row(row);
+  return layer;
+}
+
+ComparedLayer layer_of(const RunLayer& target, const RunLayer& printed) {
+  return {std::make_shared<const VoxelLayer>(VoxelLayer{{target, target}}),
+          std::make_shared<const RunLayer>(printed)};
+}
+
+Breaks found(const ComparedLayer* below, const ComparedLayer& layer, const ComparedLayer* above) {
+  const std::array<const ComparedLayer*, 3> window{below, &layer, above};
+  return find_breaks(window);
+}
+
+const RunLayer kNothing = RunLayer::powder(kWidth, 3);
+
+TEST(Breaks, ALineThatPrintsInTwoPiecesHasOneAndAGapToBridge) {
+  const ComparedLayer line =
+      layer_of(rows_of({{}, {2, 18}, {}}), rows_of({{}, {2, 9, 11, 14}, {}}));
+  const Breaks breaks = found(nullptr, line, nullptr);
+  EXPECT_EQ(breaks.count, 1);
+  EXPECT_EQ(breaks.loose, rows_of({{}, {11, 14}, {}}));
+  // What is missing near the smaller piece.
+  EXPECT_EQ(breaks.gap, rows_of({{}, {9, 11, 14, 18}, {}}));
+}
+
+TEST(Breaks, APieceHeldByTheLayerAboveIsNone) {
+  const RunLayer whole = rows_of({{}, {2, 18}, {}});
+  const ComparedLayer line = layer_of(whole, rows_of({{}, {2, 9, 11, 14}, {}}));
+  const ComparedLayer above = layer_of(whole, whole);
+  const Breaks breaks = found(nullptr, line, &above);
+  EXPECT_EQ(breaks.count, 0);
+  EXPECT_EQ(breaks.loose, kNothing);
+  EXPECT_EQ(breaks.gap, kNothing);
+}
+
+TEST(Breaks, ALayerThatDoesNotPrintHasTheGap) {
+  const RunLayer pin = rows_of({{}, {4, 8}, {}});
+  const ComparedLayer below = layer_of(pin, pin);
+  const ComparedLayer above = layer_of(pin, rows_of({{}, {4, 7}, {}}));
+  const Breaks breaks = found(&below, layer_of(pin, kNothing), &above);
+  EXPECT_EQ(breaks.count, 1);
+  EXPECT_EQ(breaks.loose, kNothing);
+  EXPECT_EQ(breaks.gap, pin);
+}
+
+TEST(Breaks, TwoPartsAreNoneWhetherTheyPrintApartOrTogether) {
+  const RunLayer parts = rows_of({{}, {2, 6, 10, 14}, {}});
+  EXPECT_EQ(found(nullptr, layer_of(parts, parts), nullptr).count, 0);
+  EXPECT_EQ(found(nullptr, layer_of(parts, rows_of({{}, {2, 14}, {}})), nullptr).count, 0);
+}
+
+}  // namespace
+}  // namespace binderjet
