@@ -30,8 +30,7 @@ void write_scan_stack(const std::string& mesh, double layer_mm, const std::strin
     for (std::size_t axis = 0; axis < 3; ++axis) point[axis] -= box.min[axis];
   }
   const Grid grid{{kPitchMm, kPitchMm, layer_mm / 2}, {1, 1, 1}};
-  const Box placed{{0, 0, 0}, {box.size(0), box.size(1), box.size(2)}};
-  const JobBox job = job_box(placed, grid, {0, 0}, {0, 0});
+  const JobBox job = job_box({box.size(0), box.size(1), box.size(2)}, grid, {0, 0}, {0, 0});
   StackInfo info;
   info.kind = StackKind::kMeasured;
   info.size = job.size_px;

@@ -180,7 +180,7 @@ SlicePlan plan_slices(const SliceOptions& options, const Console& console) {
   plan.color = take_color(parts, header.grid, header.profile.color, plan.warnings);
   for (const std::string& warning : plan.warnings) console.warning(warning);
   plan.mesh = std::make_shared<const Mesh>(merge_parts(std::move(parts), header.grid));
-  header.box = job_box(bounding_box(*plan.mesh), header.grid, lower_corner(header.sources),
+  header.box = job_box(bounding_box(*plan.mesh).max, header.grid, lower_corner(header.sources),
                        PrinterModel(header.profile.effects, header.grid).reach().xy_vx);
   if (options.color_enhance) {
     if (!plan.color) plan.color = plain_field(kWhite);

@@ -35,7 +35,7 @@ LayerChoice others(LayerChoice layers) {
 
 }  // namespace
 
-Calibrator::Calibrator(const MeasuredJob& job, const Model& declared,
+Calibrator::Calibrator(const MeasuredJob& job, const EffectList& declared,
                        const CalibrationLimits& limits,
                        const std::function<void(const std::string&)>& step)
     : job_(job),
@@ -165,7 +165,7 @@ bool Calibrator::take_best(std::vector<Fitted> fitted) {
     if (wrong < kClearly * static_cast<double>(sum_of(fitted[best].counts))) best = i;
   }
   const Candidate& candidate = fitted[best].candidate;
-  Model model = with_places_fitted(job_, fitted[best].model, candidate.effect, seen_);
+  EffectList model = with_places_fitted(job_, fitted[best].model, candidate.effect, seen_);
   model = refit_with_taken(model, candidate.effect, kLastRounds);
   const Errors errors = errors_of(model);
   step_(fmt::format("{}: printed error {:.5f} to {:.5f} on layers not seen", candidate.kind,
@@ -219,16 +219,17 @@ std::vector<std::string> Calibrator::rivals_of(const std::vector<Fitted>& fitted
   return out;
 }
 
-Calibrator::Errors Calibrator::errors_of(const Model& model) const {
+Calibrator::Errors Calibrator::errors_of(const EffectList& model) const {
   return {wrong_share(job_, model, held_),
           wrong_share(job_, model, LayerChoice(job_.masks.size(), true))};
 }
 
-WrongCounts Calibrator::counts_of(const Model& model) const {
+WrongCounts Calibrator::counts_of(const EffectList& model) const {
   return wrong_counts(job_, print_layers(job_, model, seen_));
 }
 
-Model Calibrator::refit_with_taken(const Model& model, std::size_t effect, int rounds) const {
+EffectList Calibrator::refit_with_taken(const EffectList& model, std::size_t effect,
+                                        int rounds) const {
   std::vector<FreeNumber> numbers = numbers_of_taken();
   const auto own = free_numbers(model, effect);
   numbers.insert(numbers.end(), own.begin(), own.end());
@@ -240,7 +241,7 @@ Model Calibrator::refit_with_taken(const Model& model, std::size_t effect, int r
 void Calibrator::drop_superseded() {
   for (std::size_t i = 0; taken_.size() > 1 && i < taken_.size();) {
     const std::size_t place = taken_[i].effect;
-    Model without = model_;
+    EffectList without = model_;
     if (place < declared_effects_) {
       ++i;  // a declared effect with another number
       continue;
@@ -280,7 +281,7 @@ void Calibrator::refit_all() {
     const auto own = free_numbers(model_, effect);
     numbers.insert(numbers.end(), own.begin(), own.end());
   }
-  Model all = refit(job_, model_, numbers, seen_, kLastRounds);
+  EffectList all = refit(job_, model_, numbers, seen_, kLastRounds);
   // What was declared is believed unless the print clearly says otherwise.
   constexpr double kClearly = 0.97;
   if (wrong_share(job_, all, seen_) < kClearly * wrong_share(job_, model_, seen_) &&

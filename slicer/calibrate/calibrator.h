@@ -17,12 +17,12 @@ namespace binderjet {
 class Calibrator {
  public:
   // `job` and `step` must outlive it.
-  Calibrator(const MeasuredJob& job, const Model& declared, const CalibrationLimits& limits,
+  Calibrator(const MeasuredJob& job, const EffectList& declared, const CalibrationLimits& limits,
              const std::function<void(const std::string&)>& step);
 
   void run();
 
-  const Model& model() const { return model_; }
+  const EffectList& model() const { return model_; }
   const LayerChoice& held_out() const { return held_; }
   // What the residual that is left depends on most; none if that was not looked at.
   const std::optional<Remaining>& remaining() const { return remaining_; }
@@ -43,7 +43,7 @@ class Calibrator {
   // A candidate in the real forward model.
   struct Fitted {
     Candidate candidate;
-    Model model;
+    EffectList model;
     double p = 1;
     double share = 0;
     bool equal = false;  // the regression cannot tell it from the best
@@ -57,9 +57,9 @@ class Calibrator {
   std::vector<Fitted> tried();
   bool take_best(std::vector<Fitted> fitted);
   std::vector<std::string> rivals_of(const std::vector<Fitted>& fitted, std::size_t best) const;
-  Model refit_with_taken(const Model& model, std::size_t effect, int rounds) const;
-  WrongCounts counts_of(const Model& model) const;
-  Errors errors_of(const Model& model) const;
+  EffectList refit_with_taken(const EffectList& model, std::size_t effect, int rounds) const;
+  WrongCounts counts_of(const EffectList& model) const;
+  Errors errors_of(const EffectList& model) const;
   void drop_superseded();
   void refit_all();
   void look_for_jitter();
@@ -69,7 +69,7 @@ class Calibrator {
   const std::function<void(const std::string&)>& step_;
   LayerChoice held_;
   LayerChoice seen_;
-  Model model_;
+  EffectList model_;
   std::size_t declared_effects_;
   Errors first_errors_;
   Errors errors_;

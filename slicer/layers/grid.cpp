@@ -11,11 +11,11 @@ int pixels_for(double length_mm, double pitch_mm) {
   return std::max(1, static_cast<int>(std::ceil(length_mm / pitch_mm - kRounding)));
 }
 
-JobBox job_box(const Box& part, const Grid& grid, std::array<int, 2> corner_px,
+JobBox job_box(const std::array<double, 3>& part_mm, const Grid& grid, std::array<int, 2> corner_px,
                std::array<int, 2> reach_vx) {
   JobBox box;
   for (int axis = 0; axis < 3; ++axis) {
-    const int part_px = pixels_for(part.max[axis], grid.pitch_mm[axis]);
+    const int part_px = pixels_for(part_mm[axis], grid.pitch_mm[axis]);
     if (axis < 2) {
       const int detail = grid.detail_vx[axis];
       box.margin_px[axis] = (reach_vx[axis] + detail - 1) / detail;

@@ -4,8 +4,6 @@
 
 #include <array>
 
-#include "slicer/mesh/mesh.h"
-
 namespace binderjet {
 
 // Printer pixel (i, j) of layer k covers [i, i+1) x [j, j+1) x [k, k+1) times pitch_mm. Each pixel
@@ -42,8 +40,8 @@ JobPlace place_of(const JobBox& box, const Grid& grid);
 // number, so that 10.2 mm are 100 layers of 0.102 mm.
 int pixels_for(double length_mm, double pitch_mm);
 
-// The box of a part whose lower corner is at (0, 0, 0), with that corner on bed pixel `corner_px`.
-JobBox job_box(const Box& part, const Grid& grid, std::array<int, 2> corner_px,
+// The box of a part of this size whose lower corner is on bed pixel `corner_px`.
+JobBox job_box(const std::array<double, 3>& part_mm, const Grid& grid, std::array<int, 2> corner_px,
                std::array<int, 2> reach_vx);
 
 }  // namespace binderjet

@@ -11,8 +11,9 @@
 namespace binderjet {
 namespace {
 
-ModelForm form_of(const std::vector<EffectSpec>& effects, const Grid& grid, const JobPlace& place) {
-  ModelForm form;
+AssembledModel form_of(const std::vector<EffectSpec>& effects, const Grid& grid,
+                       const JobPlace& place) {
+  AssembledModel form;
   form.place = place;
   for (const EffectSpec& effect : effects) find_effect_kind(effect.kind)->add(effect, grid, form);
   return form;
@@ -20,78 +21,11 @@ ModelForm form_of(const std::vector<EffectSpec>& effects, const Grid& grid, cons
 
 }  // namespace
 
-void ModelForm::bind_at(double new_level) {
-  if (level > 0) {
-    throw Error(ErrorKind::kBadInput, "effects",
-                "powder is bound at two levels; keep one threshold or fill");
-  }
-  level = new_level;
-}
-
-void ModelForm::shift(std::function<std::array<double, 2>(const Spot&)> by_mm,
-                      const std::array<double, 2>& most_mm) {
-  placed.shifts.push_back({std::move(by_mm), std::max(std::abs(most_mm[0]), std::abs(most_mm[1]))});
-}
-
-void ModelForm::ask_density(double radius_mm) {
-  if (placed.density_radius_mm && *placed.density_radius_mm != radius_mm) {
-    throw Error(ErrorKind::kBadInput, "effects", "density is asked for with two radii; keep one");
-  }
-  placed.density_radius_mm = radius_mm;
-}
-
-Reach ModelForm::reach(const Grid& grid) const {
-  Reach reach;
-  for (const DoseTerm& term : terms) {
-    reach.xy_vx[0] = std::max({reach.xy_vx[0], -term.x.first, term.x.last()});
-    reach.xy_vx[1] = std::max({reach.xy_vx[1], -term.y.first, term.y.last()});
-    reach.layers_below = std::max(reach.layers_below, -term.layer);
-    reach.layers_above = std::max(reach.layers_above, term.layer);
-  }
-  for (const std::array<int, 2>& box : survive_vx) {
-    for (std::size_t axis = 0; axis < 2; ++axis) reach.xy_vx[axis] += box[axis] - 1;
-  }
-  for (int axis = 0; axis < 2 && !placed.shifts.empty(); ++axis) {
-    reach.xy_vx[static_cast<std::size_t>(axis)] += placed.most_shift_vx(grid, axis);
-  }
-  reach.layers_below = std::max(reach.layers_below, placed.density_layers(grid));
-  reach.layers_above = std::max(reach.layers_above, placed.density_layers(grid));
-  for (const Wear& step : wear) {
-    for (std::size_t axis = 0; axis < 2; ++axis) reach.xy_vx[axis] += step.reach.xy_vx[axis];
-    reach.layers_below += step.reach.layers_below;
-    reach.layers_above += step.reach.layers_above;
-  }
-  for (const LayerMove& move : moves) {
-    reach.layers_below += move.most;
-    reach.layers_above += move.most;
-  }
-  return reach;
-}
-
-ModelForm::Received ModelForm::received(std::span<const RunLayer* const> window, int layer) const {
-  Received out{{window.begin(), window.end()}, nullptr};
-  if (moves.empty()) return out;
-  const int count = static_cast<int>(window.size());
-  for (int i = 0; i < count; ++i) {
-    int from = i;
-    for (const LayerMove& move : moves) from += move.by(layer + i - count / 2);
-    out.masks[static_cast<std::size_t>(i)] =
-        from < 0 || from >= count ? nullptr : window[static_cast<std::size_t>(from)];
-  }
-  const std::size_t middle = window.size() / 2;
-  if (out.masks[middle] == nullptr && window[middle] != nullptr) {
-    out.powder = std::make_shared<const RunLayer>(
-        RunLayer::powder(window[middle]->width(), window[middle]->height()));
-    out.masks[middle] = out.powder.get();
-  }
-  return out;
-}
-
 PrinterModel::PrinterModel(const std::vector<EffectSpec>& effects, const Grid& grid,
                            const JobPlace& place)
     : PrinterModel(form_of(effects, grid, place), grid, place) {}
 
-PrinterModel::PrinterModel(ModelForm form, const Grid& grid, const JobPlace& place)
+PrinterModel::PrinterModel(AssembledModel form, const Grid& grid, const JobPlace& place)
     : repeat_{grid.detail_vx[0], grid.detail_vx[1]},
       form_(std::move(form)),
       reach_(form_.reach(grid)) {
@@ -117,7 +51,7 @@ void PrinterModel::choose_filter(const Grid& grid, const JobPlace& place) {
 }
 
 RunLayer PrinterModel::bind(std::span<const RunLayer* const> window, int layer) const {
-  const ModelForm::Received masks = form_.received(window, layer);
+  const AssembledModel::Received masks = form_.received(window, layer);
   const auto* box = std::get_if<OneBox>(&filter_);
   RunLayer printed = box != nullptr ? box_threshold(*masks.masks[masks.masks.size() / 2], repeat_,
                                                     box->x, box->y, box->least)

@@ -47,7 +47,7 @@ struct Layers {
     placement.scale = kHeightMm / bounding_box(mesh).size(2);
     transform_part(mesh, placement, "golfball");
     part = std::make_shared<const Mesh>(std::move(mesh));
-    box = job_box(bounding_box(*part), grid, {0, 0}, model->reach().xy_vx);
+    box = job_box(bounding_box(*part).max, grid, {0, 0}, model->reach().xy_vx);
     first = box.size_px[2] / 4;
     target = voxelize(part, grid, box, range())->next(kLayers);
     for (const auto& layer : target) {

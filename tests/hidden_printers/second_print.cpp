@@ -32,7 +32,7 @@ Scene scene_of(const Wanted& wanted) {
   Scene scene{wanted, part("grid", {1, 1, 1}, 0).grid, {}, {}};
   const std::array<int, 2> margin_vx{pixels_for(kMarginMm, scene.grid.voxel_mm(0)),
                                      pixels_for(kMarginMm, scene.grid.voxel_mm(1))};
-  scene.box = job_box(wanted.box, scene.grid, {0, 0}, margin_vx);
+  scene.box = job_box(wanted.box.max, scene.grid, {0, 0}, margin_vx);
   scene.box.bed_px = {0, 0, 0};
   scene.place = place_of(scene.box, scene.grid);
   return scene;

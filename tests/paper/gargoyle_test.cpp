@@ -85,7 +85,7 @@ class PaperGargoyle : public testing::Test {
     const PrinterModel ideal({{"threshold", {}, {{"level", {0.5}}}}}, grid_);
     std::cout << name << '\n';
     tell_head();
-    const JobBox box = job_box(bounding_box(*mesh_), grid_, {0, 0}, model.reach().xy_vx);
+    const JobBox box = job_box(bounding_box(*mesh_).max, grid_, {0, 0}, model.reach().xy_vx);
     const Print perfect = printed(ideal, 0, box);
     tell("ideal", score(perfect));
     draw_reliefs(perfect.layers, grid_, name, "a_ideal");

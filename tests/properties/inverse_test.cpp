@@ -287,7 +287,7 @@ TEST(Inverse, AnswersBinderThatSoaksIntoTheLayersBelow) {
   // A calibrated profile's form: a share of each layer's binder reaches the two layers below.
   Case c = relief(0.35);
   for (PrinterModel& model : c.window) {
-    ModelForm form = model.form();
+    AssembledModel form = model.form();
     const DoseTerm own = form.terms.front();
     double share = 1;
     for (int layer = 1; layer <= 2; ++layer) {

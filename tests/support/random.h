@@ -73,7 +73,7 @@ class Random {
     if (chance(0.4)) effects.push_back({"survive", {}, {{"width_mm", {mm(30), mm(30)}}}});
     PrinterModel model(effects, grid);
     if (kind < 3) return model;
-    ModelForm form = model.form();
+    AssembledModel form = model.form();
     form.terms.clear();
     for (int terms = number(1, 3); terms > 0; --terms) {
       form.terms.push_back({number(-2, 2), kernel(), kernel(), number(1, 8) / 8.0});

@@ -78,7 +78,7 @@ inline Volume opened(const Volume& v, int nx, int ny) {
 }
 
 // The printed voxels, one slice per layer.
-inline Volume print(const Volume& mask, const ModelForm& form, const Grid& grid) {
+inline Volume print(const Volume& mask, const AssembledModel& form, const Grid& grid) {
   const int rx = grid.detail_vx[0];
   const int ry = grid.detail_vx[1];
   Volume out(mask.nx * rx, mask.ny * ry, mask.nz);
@@ -123,7 +123,7 @@ inline Volume paper_pass(const Volume& v, const Volume& printed, const Volume& t
 }
 
 // The masks after `passes` passes.
-inline Volume paper_masks(const Volume& target, const ModelForm& form, const Grid& grid,
+inline Volume paper_masks(const Volume& target, const AssembledModel& form, const Grid& grid,
                           int passes) {
   Volume v = target;
   for (int pass = 0; pass < passes; ++pass) {

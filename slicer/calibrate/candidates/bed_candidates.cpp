@@ -69,7 +69,7 @@ void add_bands(CandidateList& list) {
 
 void add_jets(CandidateList& list) {
   const MeasuredJob& job = list.job();
-  const ModelForm form = PrinterModel(list.model(), job.grid, job.place).form();
+  const AssembledModel form = PrinterModel(list.model(), job.grid, job.place).form();
   const double pixel = job.grid.pitch_mm[1];
   const double end = job.place.origin_mm[1] + job.place.size_mm[1];
   for (const int width_px : {1, 2, 4, 8, 16, 24}) {

@@ -13,8 +13,6 @@
 
 namespace binderjet {
 
-using Model = std::vector<EffectSpec>;
-
 // How a candidate changes the dose at a point of the surface, per unit of its coefficient.
 struct Column {
   enum class Basis {
@@ -26,7 +24,7 @@ struct Column {
   };
   Basis basis = Basis::kDose;
   std::function<double(const Spot&)> of;  // times this; empty: times 1
-  Model nudged;
+  EffectList nudged;
   double step = 1;
 };
 
@@ -40,23 +38,23 @@ struct Candidate {
   unsigned along = kNowhere;
   // The model with the effect, from the columns' coefficients; empty if those make no sense
   // (a negative share).
-  std::function<Model(std::span<const double>)> apply;
+  std::function<EffectList(std::span<const double>)> apply;
   std::size_t effect = 0;  // its place among the effects of the model that apply() makes
 
   bool named() const { return kind != "empirical"; }
 };
 
 // Every effect of the catalogue that masks and stacks can show and the model does not have yet.
-std::vector<Candidate> named_candidates(const MeasuredJob& job, const Model& model);
+std::vector<Candidate> named_candidates(const MeasuredJob& job, const EffectList& model);
 
 // The scan: what has no name, by what it depends on.
-std::vector<Candidate> scan_candidates(const MeasuredJob& job, const Model& model);
+std::vector<Candidate> scan_candidates(const MeasuredJob& job, const EffectList& model);
 
 // Helpers of both lists.
-Model with_effect(Model model, EffectSpec effect);
+EffectList with_effect(EffectList model, EffectSpec effect);
 // The dose times 1 + gain everywhere, said by the level.
-Model with_level_gain(Model model, double gain);
-const EffectSpec* find_effect(const Model& model, const std::string& kind);
+EffectList with_level_gain(EffectList model, double gain);
+const EffectSpec* find_effect(const EffectList& model, const std::string& kind);
 // Frequencies, in turns per unit, from one turn over `extent` to one over `shortest`, as close as
 // that extent can tell apart.
 std::vector<double> frequencies(double extent, double shortest);

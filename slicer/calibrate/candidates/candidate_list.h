@@ -14,17 +14,17 @@ namespace binderjet {
 class CandidateList {
  public:
   // Both must outlive the list.
-  CandidateList(const MeasuredJob& job, const Model& model) : job_(job), model_(model) {}
+  CandidateList(const MeasuredJob& job, const EffectList& model) : job_(job), model_(model) {}
 
   const MeasuredJob& job() const { return job_; }
-  const Model& model() const { return model_; }
+  const EffectList& model() const { return model_; }
   double bottom_mm() const { return job_.first_layer * job_.grid.pitch_mm[2]; }
   bool has(const std::string& kind) const { return find_effect(model_, kind) != nullptr; }
   Candidate& last() { return out_.back(); }
   std::vector<Candidate> take() { return std::move(out_); }
 
   void add(const std::string& kind, Covariate covariate, std::vector<Column> columns,
-           unsigned along, std::function<Model(std::span<const double>)> apply);
+           unsigned along, std::function<EffectList(std::span<const double>)> apply);
   // An effect whose parameter goes from 0: its column is the forward model's own difference. It
   // makes no sense below `least` and above `most`.
   void add_from_zero(const std::string& kind, Covariate covariate, double step,
@@ -32,7 +32,7 @@ class CandidateList {
 
  private:
   const MeasuredJob& job_;
-  const Model& model_;
+  const EffectList& model_;
   std::vector<Candidate> out_;
 };
 

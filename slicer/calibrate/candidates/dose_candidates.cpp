@@ -12,7 +12,7 @@ namespace {
 using Basis = Column::Basis;
 using Coefficients = std::span<const double>;
 
-std::size_t level_place(const Model& model) {
+std::size_t level_place(const EffectList& model) {
   const auto found = std::find_if(model.begin(), model.end(), [](const EffectSpec& effect) {
     return effect.numbers.contains("level");
   });
@@ -22,7 +22,7 @@ std::size_t level_place(const Model& model) {
 void add_dose_effects(CandidateList& list) {
   list.add("threshold", {"facing", "", {}}, {{Basis::kLevel, {}, {}, 1}}, kNowhere,
            [model = list.model()](Coefficients c) {
-             Model out = model;
+             EffectList out = model;
              for (EffectSpec& effect : out) {
                if (!effect.numbers.contains("level")) continue;
                double& level = effect.numbers["level"].front();
@@ -53,7 +53,7 @@ void add_kernel_effects(CandidateList& list) {
   const auto place = static_cast<std::size_t>(spread - list.model().data());
   for (std::size_t axis = 0; axis < 2; ++axis) {
     const auto widened = [model = list.model(), place, axis](Coefficients c) {
-      Model out = model;
+      EffectList out = model;
       double& width = out[place].numbers["width_mm"][axis];
       width *= std::clamp(1 + c[0], 0.2, 4.0);
       return out;
@@ -67,7 +67,7 @@ void add_kernel_effects(CandidateList& list) {
     const auto gaussian = [model = list.model(), place](Coefficients) {
       // The gaussian with the box's second moment.
       const double same_moment = 2 * std::sqrt(2 * std::log(2.0)) / std::sqrt(12.0);
-      Model out = model;
+      EffectList out = model;
       out[place].words["shape"] = "gaussian";
       for (double& width : out[place].numbers["width_mm"]) width *= same_moment;
       return out;

@@ -8,7 +8,7 @@
 namespace binderjet {
 
 void CandidateList::add(const std::string& kind, Covariate covariate, std::vector<Column> columns,
-                        unsigned along, std::function<Model(std::span<const double>)> apply) {
+                        unsigned along, std::function<EffectList(std::span<const double>)> apply) {
   out_.push_back(
       {kind, std::move(covariate), std::move(columns), along, std::move(apply), model_.size()});
 }
@@ -22,11 +22,11 @@ void CandidateList::add_from_zero(const std::string& kind, Covariate covariate, 
   column.step = step;
   add(kind, std::move(covariate), {column}, kNowhere,
       [model = model_, effect, least, most](std::span<const double> c) {
-        return c[0] < least || c[0] > most ? Model{} : with_effect(model, effect(c[0]));
+        return c[0] < least || c[0] > most ? EffectList{} : with_effect(model, effect(c[0]));
       });
 }
 
-std::vector<Candidate> named_candidates(const MeasuredJob& job, const Model& model) {
+std::vector<Candidate> named_candidates(const MeasuredJob& job, const EffectList& model) {
   CandidateList list(job, model);
   add_dose_candidates(list);
   add_shift_candidates(list);
@@ -34,12 +34,12 @@ std::vector<Candidate> named_candidates(const MeasuredJob& job, const Model& mod
   return list.take();
 }
 
-Model with_effect(Model model, EffectSpec effect) {
+EffectList with_effect(EffectList model, EffectSpec effect) {
   model.push_back(std::move(effect));
   return model;
 }
 
-Model with_level_gain(Model model, double gain) {
+EffectList with_level_gain(EffectList model, double gain) {
   for (EffectSpec& effect : model) {
     if (!effect.numbers.contains("level")) continue;
     double& level = effect.numbers["level"].front();
@@ -48,7 +48,7 @@ Model with_level_gain(Model model, double gain) {
   return model;
 }
 
-const EffectSpec* find_effect(const Model& model, const std::string& kind) {
+const EffectSpec* find_effect(const EffectList& model, const std::string& kind) {
   for (const EffectSpec& effect : model) {
     if (effect.kind == kind) return &effect;
   }

@@ -22,7 +22,7 @@ const std::string& acts_word(Basis basis) {
 
 class Scan {
  public:
-  Scan(const MeasuredJob& job, const Model& model) : job_(job), model_(model) {}
+  Scan(const MeasuredJob& job, const EffectList& model) : job_(job), model_(model) {}
 
   std::vector<Candidate> take() {
     for (const Basis acts : {Basis::kDose, Basis::kShiftX, Basis::kShiftY}) {
@@ -220,13 +220,13 @@ class Scan {
   }
 
   const MeasuredJob& job_;
-  const Model& model_;
+  const EffectList& model_;
   std::vector<Candidate> out_;
 };
 
 }  // namespace
 
-std::vector<Candidate> scan_candidates(const MeasuredJob& job, const Model& model) {
+std::vector<Candidate> scan_candidates(const MeasuredJob& job, const EffectList& model) {
   return Scan(job, model).take();
 }
 

@@ -36,11 +36,11 @@ double step_of(const EffectSpec& effect, const std::string& name, double value) 
   return found->second < 0 ? -found->second * value : found->second;
 }
 
-double& number_of(Model& model, const FreeNumber& free) {
+double& number_of(EffectList& model, const FreeNumber& free) {
   return model[free.effect].numbers.at(free.name)[free.index];
 }
 
-bool valid(const Model& model) {
+bool valid(const EffectList& model) {
   return std::all_of(model.begin(), model.end(),
                      [](const EffectSpec& effect) { return check_effect(effect).what.empty(); });
 }
@@ -66,7 +66,7 @@ Eigen::VectorXd gauss_newton(const std::vector<std::vector<float>>& columns,
 
 }  // namespace
 
-std::vector<FreeNumber> free_numbers(const Model& model, std::size_t effect) {
+std::vector<FreeNumber> free_numbers(const EffectList& model, std::size_t effect) {
   std::vector<FreeNumber> out;
   for (const auto& [name, values] : model[effect].numbers) {
     for (std::size_t i = 0; i < values.size(); ++i) {
@@ -77,13 +77,13 @@ std::vector<FreeNumber> free_numbers(const Model& model, std::size_t effect) {
   return out;
 }
 
-std::vector<std::vector<float>> slopes(const MeasuredJob& job, const Model& model,
+std::vector<std::vector<float>> slopes(const MeasuredJob& job, const EffectList& model,
                                        const std::vector<SurfacePoint>& points,
                                        const std::vector<FreeNumber>& numbers) {
   const std::vector<double> margin = margins_at(job, model, points);
   std::vector<std::vector<float>> out(numbers.size());
   oneapi::tbb::parallel_for(std::size_t{0}, numbers.size(), [&](std::size_t n) {
-    Model nudged = model;
+    EffectList nudged = model;
     double step = numbers[n].step;
     number_of(nudged, numbers[n]) += step;
     if (!valid(nudged)) {
@@ -98,7 +98,7 @@ std::vector<std::vector<float>> slopes(const MeasuredJob& job, const Model& mode
   return out;
 }
 
-std::vector<std::vector<float>> scanner_columns(const MeasuredJob& job, const Model& model,
+std::vector<std::vector<float>> scanner_columns(const MeasuredJob& job, const EffectList& model,
                                                 const std::vector<SurfacePoint>& points) {
   if (!job.scanned) return {};
   // About as far as a scanner blurs: the differences at both sides are shift and, added, blur.
@@ -129,8 +129,8 @@ std::vector<std::vector<float>> scanner_columns(const MeasuredJob& job, const Mo
   return out;
 }
 
-Model refit(const MeasuredJob& job, Model model, const std::vector<FreeNumber>& numbers,
-            const LayerChoice& layers, int rounds) {
+EffectList refit(const MeasuredJob& job, EffectList model, const std::vector<FreeNumber>& numbers,
+                 const LayerChoice& layers, int rounds) {
   double wrong = wrong_share(job, model, layers);
   constexpr double kEnough = 0.003;  // a smaller relative gain ends the fit
   for (int round = 0; round < rounds; ++round) {
@@ -142,7 +142,7 @@ Model refit(const MeasuredJob& job, Model model, const std::vector<FreeNumber>& 
     const Eigen::VectorXd move = gauss_newton(columns, points);
     const double before = wrong;
     for (const double damping : {1.0, 0.5, 0.2}) {
-      Model next = model;
+      EffectList next = model;
       for (std::size_t n = 0; n < numbers.size(); ++n) {
         constexpr double kMostSteps = 60;
         number_of(next, numbers[n]) +=

@@ -18,27 +18,21 @@ struct FreeNumber {
   std::size_t index = 0;
   double step = 0;  // a move that the print shows
 };
-std::vector<FreeNumber> free_numbers(const Model& model, std::size_t effect);
+std::vector<FreeNumber> free_numbers(const EffectList& model, std::size_t effect);
 
 // d(dose - level) / d(number) at each point, per step.
-std::vector<std::vector<float>> slopes(const MeasuredJob& job, const Model& model,
+std::vector<std::vector<float>> slopes(const MeasuredJob& job, const EffectList& model,
                                        const std::vector<SurfacePoint>& points,
                                        const std::vector<FreeNumber>& numbers);
 
 // What a scanner adds and no printer is to blame for: the rest of a shift and of a turn, blur.
 // One column each; none for prints that were not scanned.
-std::vector<std::vector<float>> scanner_columns(const MeasuredJob& job, const Model& model,
+std::vector<std::vector<float>> scanner_columns(const MeasuredJob& job, const EffectList& model,
                                                 const std::vector<SurfacePoint>& points);
 
 // The model with these numbers refitted on the chosen layers in at most `rounds` steps; never worse
 // there than it was.
-Model refit(const MeasuredJob& job, Model model, const std::vector<FreeNumber>& numbers,
-            const LayerChoice& layers, int rounds);
-
-// How many points a choice and a fit look at, and how far from the model's edge a measured one may
-// be.
-constexpr int kChoicePoints = 36000;
-constexpr int kFitPoints = 15000;
-constexpr double kPairReachMm = 0.45;
+EffectList refit(const MeasuredJob& job, EffectList model, const std::vector<FreeNumber>& numbers,
+                 const LayerChoice& layers, int rounds);
 
 }  // namespace binderjet

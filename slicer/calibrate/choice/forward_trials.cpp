@@ -18,7 +18,7 @@ struct Tried {
   std::string kind;
   Covariate covariate;
   unsigned along;
-  Model model;
+  EffectList model;
   std::vector<double> gain;
 
   double total() const { return sum_of_cells(gain); }
@@ -26,7 +26,7 @@ struct Tried {
 
 class Trials {
  public:
-  Trials(const MeasuredJob& job, const Model& model, const LayerChoice& layers)
+  Trials(const MeasuredJob& job, const EffectList& model, const LayerChoice& layers)
       : job_(job), model_(model), layers_(layers) {}
 
   std::vector<Tried> take() {
@@ -150,7 +150,7 @@ class Trials {
   }
 
   const MeasuredJob& job_;
-  const Model& model_;
+  const EffectList& model_;
   const LayerChoice& layers_;
   std::vector<Shared<RunLayer>> printed_;  // by the model as it is
   WrongCounts before_;
@@ -191,7 +191,7 @@ double place_step(const EffectSpec& effect, const std::string& name, double valu
 
 }  // namespace
 
-std::vector<Trial> try_effects(const MeasuredJob& job, const Model& model,
+std::vector<Trial> try_effects(const MeasuredJob& job, const EffectList& model,
                                const LayerChoice& layers) {
   Trials trials(job, model, layers);
   const std::vector<Tried> tried = trials.take();
@@ -233,8 +233,8 @@ std::vector<Trial> try_effects(const MeasuredJob& job, const Model& model,
   return out;
 }
 
-Model with_places_fitted(const MeasuredJob& job, Model model, std::size_t effect,
-                         const LayerChoice& layers) {
+EffectList with_places_fitted(const MeasuredJob& job, EffectList model, std::size_t effect,
+                              const LayerChoice& layers) {
   std::vector<std::pair<std::string, std::size_t>> places;
   for (const auto& [name, values] : model[effect].numbers) {
     for (std::size_t i = 0; i < values.size(); ++i) {
@@ -248,7 +248,7 @@ Model with_places_fitted(const MeasuredJob& job, Model model, std::size_t effect
     for (const auto& [name, index] : places) {
       for (const double sign : {-1.0, 1.0}) {
         for (int moves = 0; moves < 4; ++moves) {
-          Model next = model;
+          EffectList next = model;
           double& value = next[effect].numbers.at(name)[index];
           value += sign * steps * place_step(next[effect], name, value, job.grid);
           if (!check_effect(next[effect]).what.empty()) break;

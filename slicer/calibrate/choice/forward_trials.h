@@ -14,19 +14,19 @@ namespace binderjet {
 // The best of one kind.
 struct Trial {
   Candidate candidate;  // without columns; its model is `model`
-  Model model;
+  EffectList model;
   double share = 0;          // of the wrong voxels that it takes away
   double p = 1;              // family-wise, over all that was tried
   bool folds_agree = false;  // along every axis it does not depend on (most_agree())
 };
 
 // Those that make the print of the chosen layers better, the best first.
-std::vector<Trial> try_effects(const MeasuredJob& job, const Model& model,
+std::vector<Trial> try_effects(const MeasuredJob& job, const EffectList& model,
                                const LayerChoice& layers);
 
 // The model with the numbers that name a place or a size of this effect (at_mm, from_mm, radius_mm,
 // ...) moved to where the chosen layers are printed best.
-Model with_places_fitted(const MeasuredJob& job, Model model, std::size_t effect,
-                         const LayerChoice& layers);
+EffectList with_places_fitted(const MeasuredJob& job, EffectList model, std::size_t effect,
+                              const LayerChoice& layers);
 
 }  // namespace binderjet

@@ -26,7 +26,7 @@ double follows(const std::vector<double>& shifts) {
 
 }  // namespace
 
-std::optional<Jitter> find_jitter(const MeasuredJob& job, const Model& model,
+std::optional<Jitter> find_jitter(const MeasuredJob& job, const EffectList& model,
                                   const std::vector<SurfacePoint>& points,
                                   const std::vector<std::vector<float>>& known) {
   std::vector<char> has_points(job.masks.size(), 0);

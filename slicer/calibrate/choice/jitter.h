@@ -21,7 +21,7 @@ struct Jitter {
 
 // None if the layers are apart by next to nothing, or if their shifts follow each other: then they
 // have a cause that depends on the height, and this is not it. `known` as for choose().
-std::optional<Jitter> find_jitter(const MeasuredJob& job, const Model& model,
+std::optional<Jitter> find_jitter(const MeasuredJob& job, const EffectList& model,
                                   const std::vector<SurfacePoint>& points,
                                   const std::vector<std::vector<float>>& known);
 

@@ -37,7 +37,7 @@ std::string finding(const Candidate& candidate) {
 
 }  // namespace
 
-std::vector<Choice> choose(const MeasuredJob& job, const Model& model,
+std::vector<Choice> choose(const MeasuredJob& job, const EffectList& model,
                            const std::vector<SurfacePoint>& points,
                            const std::vector<std::vector<float>>& known,
                            const std::vector<Candidate>& candidates) {

@@ -23,7 +23,7 @@ struct Choice {
 // `known` are columns of what is already in the model; the residual and the candidates are made
 // orthogonal to them. The best first, then the best of each other kind and dependence that takes at
 // least four fifths as much; none if there are too few points or nothing takes any.
-std::vector<Choice> choose(const MeasuredJob& job, const Model& model,
+std::vector<Choice> choose(const MeasuredJob& job, const EffectList& model,
                            const std::vector<SurfacePoint>& points,
                            const std::vector<std::vector<float>>& known,
                            const std::vector<Candidate>& candidates);

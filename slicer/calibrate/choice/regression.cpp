@@ -10,7 +10,7 @@
 
 namespace binderjet::regression {
 
-Field field_of(const MeasuredJob& job, const Model& model,
+Field field_of(const MeasuredJob& job, const EffectList& model,
                const std::vector<SurfacePoint>& points) {
   Field field;
   field.margin = margins_at(job, model, points);

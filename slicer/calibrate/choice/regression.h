@@ -25,7 +25,8 @@ struct Field {
   std::array<std::vector<float>, 2> shift;  // dose per mm
   std::vector<int> cell;                    // printed_error.h
 };
-Field field_of(const MeasuredJob& job, const Model& model, const std::vector<SurfacePoint>& points);
+Field field_of(const MeasuredJob& job, const EffectList& model,
+               const std::vector<SurfacePoint>& points);
 
 // A candidate's column at each point.
 std::vector<float> values(const Column& column, const MeasuredJob& job, const Field& field,

@@ -33,7 +33,7 @@ double DoseProbe::Rise::at(double offset) const {
   return low + part * (rise[static_cast<std::size_t>(below + 1)] - low);
 }
 
-DoseProbe::DoseProbe(ModelForm form, const Grid& grid, const JobPlace& place)
+DoseProbe::DoseProbe(AssembledModel form, const Grid& grid, const JobPlace& place)
     : form_(std::move(form)), grid_(grid), place_(place) {
   const Reach reach = form_.reach(grid);
   window_reach_ = std::max(reach.layers_below, reach.layers_above);
@@ -89,7 +89,7 @@ double DoseProbe::term_dose(const Term& term, const RunLayer& mask, int layer,
 
 void DoseProbe::margins(std::span<const RunLayer* const> window, int layer,
                         std::span<const DosePlace> places, std::span<double> out) const {
-  const ModelForm::Received received = form_.received(window, layer);
+  const AssembledModel::Received received = form_.received(window, layer);
   window = received.masks;
   const int middle = static_cast<int>(window.size()) / 2;
   std::optional<DensityField> density;

@@ -19,7 +19,7 @@ struct DosePlace {
 
 class DoseProbe {
  public:
-  DoseProbe(ModelForm form, const Grid& grid, const JobPlace& place);
+  DoseProbe(AssembledModel form, const Grid& grid, const JobPlace& place);
 
   // How many layers on each side of a mask the windows below must hold.
   int window_reach() const { return window_reach_; }
@@ -46,7 +46,7 @@ class DoseProbe {
   static Rise rise_of(const Kernel& kernel);
   double term_dose(const Term& term, const RunLayer& mask, int layer, DosePlace place) const;
 
-  ModelForm form_;
+  AssembledModel form_;
   Grid grid_;
   JobPlace place_;
   int window_reach_;

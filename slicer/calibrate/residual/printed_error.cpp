@@ -69,7 +69,7 @@ std::vector<double> gains(const WrongCounts& before, const WrongCounts& after) {
   return out;
 }
 
-double wrong_share(const MeasuredJob& job, const Model& model, const LayerChoice& layers) {
+double wrong_share(const MeasuredJob& job, const EffectList& model, const LayerChoice& layers) {
   const auto printed = print_layers(job, model, layers);
   std::int64_t solid = 0;
   for (std::size_t k = 0; k < printed.size(); ++k) {

@@ -36,6 +36,6 @@ std::int64_t sum_of(const WrongCounts& counts);
 std::vector<double> gains(const WrongCounts& before, const WrongCounts& after);
 
 // |printed xor measured| / |measured| over the chosen layers, mean of the replicates.
-double wrong_share(const MeasuredJob& job, const Model& model, const LayerChoice& layers);
+double wrong_share(const MeasuredJob& job, const EffectList& model, const LayerChoice& layers);
 
 }  // namespace binderjet

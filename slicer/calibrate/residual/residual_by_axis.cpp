@@ -6,7 +6,6 @@
 #include <functional>
 #include <memory>
 
-#include "slicer/calibrate/choice/fit.h"
 #include "slicer/calibrate/residual/surface.h"
 #include "slicer/model/dose/density_field.h"
 

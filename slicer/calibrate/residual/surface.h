@@ -31,6 +31,12 @@ struct SurfacePoint {
   }
 };
 
+// How many points a choice and a fit look at, and how far from the model's edge a measured one may
+// be.
+constexpr int kChoicePoints = 36000;
+constexpr int kFitPoints = 15000;
+constexpr double kPairReachMm = 0.45;
+
 // Which layers of a job are looked at: all whose flag is set.
 using LayerChoice = std::vector<bool>;
 

@@ -24,7 +24,7 @@ std::vector<StampedModel> weighted(const std::vector<PrinterModel>& models, cons
   return stamped(models, weights, grid);
 }
 
-double level_share(const ModelForm& form) {
+double level_share(const AssembledModel& form) {
   double gains = 0;
   for (const DoseTerm& term : form.terms) gains += term.gain;
   return form.level / gains;

@@ -4,12 +4,12 @@
 #include <cmath>
 #include <numbers>
 
-#include "slicer/model/printer_model.h"
+#include "slicer/model/effects/assembled_model.h"
 
 namespace binderjet {
 namespace {
 
-void add(const EffectSpec& spec, const Grid&, ModelForm& form) {
+void add(const EffectSpec& spec, const Grid&, AssembledModel& form) {
   const double angle = spec.number("direction_deg") * std::numbers::pi / 180;
   const double turn = 2 * std::numbers::pi / spec.number("period_mm");
   const double x = turn * std::cos(angle);

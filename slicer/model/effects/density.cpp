@@ -3,12 +3,12 @@
 
 #include <cmath>
 
-#include "slicer/model/printer_model.h"
+#include "slicer/model/effects/assembled_model.h"
 
 namespace binderjet {
 namespace {
 
-void add(const EffectSpec& spec, const Grid&, ModelForm& form) {
+void add(const EffectSpec& spec, const Grid&, AssembledModel& form) {
   const double radius_mm = spec.number("radius_mm");
   form.ask_density(radius_mm);
   const double strength = spec.number("strength");

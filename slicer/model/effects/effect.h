@@ -30,6 +30,9 @@ struct EffectSpec {
   }
 };
 
+// The effects of a printer model, in the order in which they act.
+using EffectList = std::vector<EffectSpec>;
+
 // How far from a voxel masks still matter for it: voxels in x and y, layers in z.
 struct Reach {
   std::array<int, 2> xy_vx{};
@@ -56,7 +59,7 @@ struct WordRule {
 // How far the level of a real printer may be off, as dose.
 constexpr double kLevelDrift = 0.05;
 
-struct ModelForm;  // slicer/model/printer_model.h
+struct AssembledModel;  // assembled_model.h
 
 struct EffectKind {
   std::string kind;
@@ -64,7 +67,7 @@ struct EffectKind {
   std::vector<NumberRule> numbers;
   // The forward form: writes the effect into the model, which knows from there how far it reaches.
   // Error{kBadInput} if it does not fit there.
-  void (*add)(const EffectSpec&, const Grid&, ModelForm&);
+  void (*add)(const EffectSpec&, const Grid&, AssembledModel&);
 };
 
 const std::vector<EffectKind>& effect_kinds();

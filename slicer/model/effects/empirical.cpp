@@ -6,7 +6,7 @@
 #include <numbers>
 
 #include "slicer/base/error.h"
-#include "slicer/model/printer_model.h"
+#include "slicer/model/effects/assembled_model.h"
 
 namespace binderjet {
 namespace {
@@ -90,7 +90,7 @@ std::pair<Of, double> shape_of(const EffectSpec& spec) {
           kMost};
 }
 
-void add(const EffectSpec& spec, const Grid&, ModelForm& form) {
+void add(const EffectSpec& spec, const Grid&, AssembledModel& form) {
   if (spec.words.at("axis") == "density") form.ask_density(need(spec, "radius_mm"));
   const Place place = place_of(spec, form.place);
   const auto [of, most] = shape_of(spec);

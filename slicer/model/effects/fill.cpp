@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "slicer/model/effects/fill.h"
 
-#include "slicer/model/printer_model.h"
+#include "slicer/model/effects/assembled_model.h"
 
 namespace binderjet {
 
@@ -9,7 +9,7 @@ EffectKind fill_kind() {
   return {"fill",
           {},
           {{"level", 1, 0, 1, 0, kLevelDrift}},
-          [](const EffectSpec& spec, const Grid&, ModelForm& form) {
+          [](const EffectSpec& spec, const Grid&, AssembledModel& form) {
             form.bind_at(spec.number("level"));
           }};
 }

@@ -4,12 +4,12 @@
 #include <cmath>
 
 #include "slicer/base/error.h"
-#include "slicer/model/printer_model.h"
+#include "slicer/model/effects/assembled_model.h"
 
 namespace binderjet {
 namespace {
 
-void add(const EffectSpec& spec, const Grid& grid, ModelForm& form) {
+void add(const EffectSpec& spec, const Grid& grid, AssembledModel& form) {
   if (!form.placed.weak_drops.empty()) {
     throw Error(ErrorKind::kBadInput, "effects", "first_drops stands twice; keep one");
   }

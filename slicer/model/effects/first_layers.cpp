@@ -3,14 +3,14 @@
 
 #include <cmath>
 
-#include "slicer/model/printer_model.h"
+#include "slicer/model/effects/assembled_model.h"
 
 namespace binderjet {
 EffectKind first_layers_kind() {
   return {"first_layers",
           {},
           {{"amount", 1, -0.95, 5}, {"height_mm", 1, 0, 100}},
-          [](const EffectSpec& spec, const Grid&, ModelForm& form) {
+          [](const EffectSpec& spec, const Grid&, AssembledModel& form) {
             const double amount = spec.number("amount");
             const double height = spec.number("height_mm");
             form.placed.gains.push_back({[amount, height](const Spot& spot) {

@@ -4,12 +4,12 @@
 #include <algorithm>
 #include <cmath>
 
-#include "slicer/model/printer_model.h"
+#include "slicer/model/effects/assembled_model.h"
 
 namespace binderjet {
 namespace {
 
-void add(const EffectSpec& spec, const Grid&, ModelForm& form) {
+void add(const EffectSpec& spec, const Grid&, AssembledModel& form) {
   const std::array<double, 2> per{spec.number("per_mm", 0), spec.number("per_mm", 1)};
   const double bowl = spec.number("per_mm2");
   const std::array<double, 2> center{spec.number("center_mm", 0), spec.number("center_mm", 1)};

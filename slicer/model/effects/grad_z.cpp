@@ -3,14 +3,14 @@
 
 #include <algorithm>
 
-#include "slicer/model/printer_model.h"
+#include "slicer/model/effects/assembled_model.h"
 
 namespace binderjet {
 EffectKind grad_z_kind() {
   return {"grad_z",
           {},
           {{"per_mm", 1, -1, 1}, {"from_mm", 1, -1e-9, 1000}},
-          [](const EffectSpec& spec, const Grid&, ModelForm& form) {
+          [](const EffectSpec& spec, const Grid&, AssembledModel& form) {
             const double per = spec.number("per_mm");
             const double from = spec.number("from_mm");
             static constexpr double kMost = 0.9;

@@ -3,13 +3,13 @@
 
 #include <algorithm>
 
-#include "slicer/model/printer_model.h"
+#include "slicer/model/effects/assembled_model.h"
 #include "slicer/model/wear/morphology.h"
 
 namespace binderjet {
 namespace {
 
-void add(const EffectSpec& spec, const Grid& grid, ModelForm& form) {
+void add(const EffectSpec& spec, const Grid& grid, AssembledModel& form) {
   const double radius = spec.number("radius_mm");
   const Ellipsoid out(radius, grid);
   const Ellipsoid back(std::max(0.0, radius - spec.number("skin_mm")), grid);

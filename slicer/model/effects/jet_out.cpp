@@ -5,7 +5,7 @@
 #include <cmath>
 #include <memory>
 
-#include "slicer/model/printer_model.h"
+#include "slicer/model/effects/assembled_model.h"
 
 namespace binderjet {
 namespace {
@@ -14,7 +14,7 @@ namespace {
 // further along.
 class Spread {
  public:
-  explicit Spread(const ModelForm& form) {
+  explicit Spread(const AssembledModel& form) {
     first_ = form.terms.front().y.first;
     int last = first_;
     for (const DoseTerm& term : form.terms) {
@@ -49,7 +49,7 @@ class Spread {
 
 }  // namespace
 
-std::function<double(double)> share_from_jets(const ModelForm& form, const Grid& grid,
+std::function<double(double)> share_from_jets(const AssembledModel& form, const Grid& grid,
                                               double from_mm, double to_mm) {
   const auto spread = std::make_shared<const Spread>(form);
   return [spread, from_mm, to_mm, voxel_mm = grid.voxel_mm(1)](double y_mm) {
@@ -61,7 +61,7 @@ EffectKind jet_out_kind() {
   return {"jet_out",
           {},
           {{"from_mm", 1, -1000, 1000}, {"to_mm", 1, -1000, 1000}, {"amount", 1, -1, 2}},
-          [](const EffectSpec& spec, const Grid& grid, ModelForm& form) {
+          [](const EffectSpec& spec, const Grid& grid, AssembledModel& form) {
             const double amount = spec.number("amount");
             form.placed.gains.push_back(
                 {[amount, share = share_from_jets(form, grid, spec.number("from_mm"),

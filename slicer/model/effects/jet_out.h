@@ -18,7 +18,7 @@ EffectKind jet_out_kind();
 
 // The share of its binder that a place at y_mm gets from the jets in [from_mm, to_mm), where all
 // around is printed.
-std::function<double(double y_mm)> share_from_jets(const ModelForm& form, const Grid& grid,
+std::function<double(double y_mm)> share_from_jets(const AssembledModel& form, const Grid& grid,
                                                    double from_mm, double to_mm);
 
 }  // namespace binderjet

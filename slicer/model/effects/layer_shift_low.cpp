@@ -3,14 +3,14 @@
 
 #include <cmath>
 
-#include "slicer/model/printer_model.h"
+#include "slicer/model/effects/assembled_model.h"
 
 namespace binderjet {
 EffectKind layer_shift_low_kind() {
   return {"layer_shift_low",
           {},
           {{"by_mm", 2, -5, 5}, {"height_mm", 1, 0, 100}},
-          [](const EffectSpec& spec, const Grid&, ModelForm& form) {
+          [](const EffectSpec& spec, const Grid&, AssembledModel& form) {
             const std::array<double, 2> by{spec.number("by_mm", 0), spec.number("by_mm", 1)};
             const double height_mm = spec.number("height_mm");
             form.shift(

@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "slicer/model/effects/parity.h"
 
-#include "slicer/model/printer_model.h"
+#include "slicer/model/effects/assembled_model.h"
 
 namespace binderjet {
 EffectKind parity_kind() {
   return {"parity",
           {},
           {{"by_mm", 2, -5, 5}},
-          [](const EffectSpec& spec, const Grid&, ModelForm& form) {
+          [](const EffectSpec& spec, const Grid&, AssembledModel& form) {
             const std::array<double, 2> by{spec.number("by_mm", 0), spec.number("by_mm", 1)};
             form.shift(
                 [by](const Spot& spot) -> std::array<double, 2> {

@@ -3,14 +3,14 @@
 
 #include <cmath>
 
-#include "slicer/model/printer_model.h"
+#include "slicer/model/effects/assembled_model.h"
 
 namespace binderjet {
 EffectKind pause_kind() {
   return {"pause",
           {},
           {{"at_mm", 1, -1e-9, 1000}, {"amount", 1, -0.95, 2}},
-          [](const EffectSpec& spec, const Grid&, ModelForm& form) {
+          [](const EffectSpec& spec, const Grid&, AssembledModel& form) {
             const double at = spec.number("at_mm");
             const double amount = spec.number("amount");
             form.placed.gains.push_back(

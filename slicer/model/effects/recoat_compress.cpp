@@ -4,14 +4,14 @@
 #include <algorithm>
 #include <cmath>
 
-#include "slicer/model/printer_model.h"
+#include "slicer/model/effects/assembled_model.h"
 
 namespace binderjet {
 namespace {
 
 constexpr int kMostLayers = 8;  // what a stream holds of the job on each side
 
-void add(const EffectSpec& spec, const Grid&, ModelForm& form) {
+void add(const EffectSpec& spec, const Grid&, AssembledModel& form) {
   const double share = spec.number("share");
   // At the middle of printed layer k lies what was meant for (k + 1/2) / (1 - share).
   const double lower = share / (1 - share);

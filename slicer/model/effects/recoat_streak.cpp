@@ -3,12 +3,12 @@
 
 #include <cmath>
 
-#include "slicer/model/printer_model.h"
+#include "slicer/model/effects/assembled_model.h"
 
 namespace binderjet {
 namespace {
 
-void add(const EffectSpec& spec, const Grid&, ModelForm& form) {
+void add(const EffectSpec& spec, const Grid&, AssembledModel& form) {
   const bool across_x = spec.words.at("across") == "x";
   const double from = spec.number("from_mm");
   const double to = spec.number("to_mm");

@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "slicer/model/effects/rounding.h"
 
-#include "slicer/model/printer_model.h"
+#include "slicer/model/effects/assembled_model.h"
 #include "slicer/model/wear/morphology.h"
 #include "slicer/model/wear/smoothing.h"
 
 namespace binderjet {
 namespace {
 
-void add_opening(const Ellipsoid& ball, ModelForm& form) {
+void add_opening(const Ellipsoid& ball, AssembledModel& form) {
   const auto [x, y, z] = ball.reach();
   const Reach reach{{x, y}, z, z};
   form.wear.push_back({reach, [ball](std::span<const RunLayer* const> window) {
@@ -18,13 +18,13 @@ void add_opening(const Ellipsoid& ball, ModelForm& form) {
       {reach, [ball](std::span<const RunLayer* const> window) { return dilated(window, ball); }});
 }
 
-void add_gaussian(double radius_mm, const Grid& grid, ModelForm& form) {
+void add_gaussian(double radius_mm, const Grid& grid, AssembledModel& form) {
   const Smoothing smoothing(radius_mm, grid);
   const auto [x, y, z] = smoothing.reach();
   form.wear.push_back({{{x, y}, z, z}, smoothing});
 }
 
-void add(const EffectSpec& spec, const Grid& grid, ModelForm& form) {
+void add(const EffectSpec& spec, const Grid& grid, AssembledModel& form) {
   const double radius_mm = spec.number("radius_mm");
   const std::string& shape = spec.words.at("shape");
   if (shape == "ball") add_opening(Ellipsoid(radius_mm, grid), form);

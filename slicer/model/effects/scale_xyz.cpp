@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "slicer/model/effects/scale_xyz.h"
 
-#include "slicer/model/printer_model.h"
+#include "slicer/model/effects/assembled_model.h"
 
 namespace binderjet {
 EffectKind scale_xyz_kind() {
   return {"scale_xyz",
           {},
           {{"by", 2, -0.1, 0.1}},
-          [](const EffectSpec& spec, const Grid&, ModelForm& form) {
+          [](const EffectSpec& spec, const Grid&, AssembledModel& form) {
             const std::array<double, 2> by{spec.number("by", 0), spec.number("by", 1)};
             const std::array<double, 2> center{form.place.center_mm(0), form.place.center_mm(1)};
             form.shift(

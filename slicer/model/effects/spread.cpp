@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "slicer/model/effects/spread.h"
 
-#include "slicer/model/printer_model.h"
+#include "slicer/model/effects/assembled_model.h"
 
 namespace binderjet {
 namespace {
@@ -21,7 +21,7 @@ EffectKind spread_kind() {
   return {"spread",
           {{"shape", {"box", "gaussian"}}},
           {{"width_mm", 2, 0, kMaxWidthMm, kDriftShare, 0}},
-          [](const EffectSpec& spec, const Grid& grid, ModelForm& form) {
+          [](const EffectSpec& spec, const Grid& grid, AssembledModel& form) {
             for (DoseTerm& term : form.terms) {
               term.x = kernel(spec, grid, 0);
               term.y = kernel(spec, grid, 1);

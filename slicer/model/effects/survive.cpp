@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "slicer/model/effects/survive.h"
 
-#include "slicer/model/printer_model.h"
+#include "slicer/model/effects/assembled_model.h"
 
 namespace binderjet {
 
@@ -10,7 +10,7 @@ EffectKind survive_kind() {
   return {"survive",
           {},
           {{"width_mm", 2, 0, kMaxWidthMm}},
-          [](const EffectSpec& spec, const Grid& grid, ModelForm& form) {
+          [](const EffectSpec& spec, const Grid& grid, AssembledModel& form) {
             form.survive_vx.push_back({pixels_for(spec.number("width_mm", 0), grid.voxel_mm(0)),
                                        pixels_for(spec.number("width_mm", 1), grid.voxel_mm(1))});
           }};

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "slicer/model/effects/tail.h"
 
-#include "slicer/model/printer_model.h"
+#include "slicer/model/effects/assembled_model.h"
 
 namespace binderjet {
 namespace {
 
-void add(const EffectSpec& spec, const Grid& grid, ModelForm& form) {
+void add(const EffectSpec& spec, const Grid& grid, AssembledModel& form) {
   const double share = spec.number("share");
   const std::vector<DoseTerm> own = form.terms;
   for (DoseTerm& term : form.terms) term.gain *= 1 - share;

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "slicer/model/effects/z_bleed_down.h"
 
-#include "slicer/model/printer_model.h"
+#include "slicer/model/effects/assembled_model.h"
 
 namespace binderjet {
 namespace {
@@ -10,7 +10,7 @@ namespace {
 constexpr double kLeastShare = 0.01;
 constexpr int kMostLayers = 8;
 
-void add(const EffectSpec& spec, const Grid&, ModelForm& form) {
+void add(const EffectSpec& spec, const Grid&, AssembledModel& form) {
   const std::vector<DoseTerm> own = form.terms;
   double share = 1;
   for (int j = 1; j <= kMostLayers; ++j) {

@@ -62,8 +62,8 @@ inline Layers paint(const Mesh& mesh, const std::shared_ptr<const ColorField>& f
   threshold.numbers["level"] = {0.5};
   const auto model =
       std::make_shared<const PrinterModel>(std::vector<EffectSpec>{spread, threshold}, out.grid);
-  out.box =
-      job_box(bounding_box(mesh), out.grid, {0, 0}, passes > 0 ? model->reach().xy_vx : margin_vx);
+  out.box = job_box(bounding_box(mesh).max, out.grid, {0, 0},
+                    passes > 0 ? model->reach().xy_vx : margin_vx);
   const int count = out.box.size_px[2];
   if (range.size() == 0) range = {0, count};
   const Shell shell(out.grid, out.box, depth_mm, field);

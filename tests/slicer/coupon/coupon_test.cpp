@@ -25,8 +25,7 @@ std::vector<RunLayer> slices(const std::string& kind) {
     for (std::size_t a = 0; a < 3; ++a) p[a] -= box.min[a];
   }
   const Grid grid{{kVoxelMm, kVoxelMm, 0.1}, {1, 1, 1}};
-  const JobBox job =
-      job_box({{0, 0, 0}, {box.size(0), box.size(1), box.size(2)}}, grid, {0, 0}, {0, 0});
+  const JobBox job = job_box({box.size(0), box.size(1), box.size(2)}, grid, {0, 0}, {0, 0});
   const auto stream = voxelize(std::make_shared<const Mesh>(moved), grid, job, {0, job.size_px[2]});
   std::vector<RunLayer> out;
   while (stream->rest().size() > 0) out.push_back(stream->next(1).front()->slices.front());

@@ -73,7 +73,7 @@ TEST(PrinterModelForm, FillsMoreWithAGaussianThanWithABoxAsWide) {
 
 TEST(PrinterModelForm, BindsTheLayerBelowThroughATermThatReachesThere) {
   // Half of a layer's binder seeps one layer down, as a calibration may find.
-  ModelForm form;
+  AssembledModel form;
   form.level = 0.5;
   form.terms.push_back({1, {}, {}, 0.5});
   const PrinterModel model(form, kGrid);

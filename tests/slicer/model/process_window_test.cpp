@@ -23,7 +23,7 @@ TEST(ProcessWindow, IsTheModelAndSpreadTenPercentAndLevelAFiveHundredthOff) {
   EXPECT_EQ(models.front().form().level, 0.25);
   std::set<std::pair<int, int>> corners;  // level in 1/100, kernel reach
   for (std::size_t m = 1; m < models.size(); ++m) {
-    const ModelForm& form = models[m].form();
+    const AssembledModel& form = models[m].form();
     corners.emplace(static_cast<int>(std::lround(100 * form.level)), form.terms[0].x.last());
   }
   // Boxes of 18 and 22 voxels reach 9 and 11 from the middle one.

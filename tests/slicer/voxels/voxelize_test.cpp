@@ -27,7 +27,7 @@ std::vector<RunLayer> all_slices(const Mesh& mesh, const Grid& grid, JobBox job,
   return slices;
 }
 std::vector<RunLayer> all_slices(const Mesh& mesh, const Grid& grid) {
-  return all_slices(mesh, grid, job_box(bounding_box(mesh), grid, {0, 0}, {0, 0}));
+  return all_slices(mesh, grid, job_box(bounding_box(mesh).max, grid, {0, 0}, {0, 0}));
 }
 std::int64_t solid(const std::vector<RunLayer>& slices) {
   std::int64_t ones = 0;
@@ -87,7 +87,7 @@ TEST(Voxelize, GivesTheVolumeOfASphere) {
 TEST(Voxelize, GivesTheSameBitsForAnyBlockSizeAndAnyNumberOfThreads) {
   const Grid grid{{0.2, 0.15, 0.1}, {2, 2, 2}};
   const Mesh mesh = at_origin(models::golf_ball(4, 4));
-  const JobBox job = job_box(bounding_box(mesh), grid, {7, 9}, {3, 2});
+  const JobBox job = job_box(bounding_box(mesh).max, grid, {7, 9}, {3, 2});
   const std::vector<RunLayer> one = all_slices(mesh, grid, job, 1);
   EXPECT_EQ(one, all_slices(mesh, grid, job, 7));
   const oneapi::tbb::global_control single(oneapi::tbb::global_control::max_allowed_parallelism, 1);
@@ -97,7 +97,7 @@ TEST(Voxelize, GivesTheSameBitsForAnyBlockSizeAndAnyNumberOfThreads) {
 TEST(Voxelize, PutsTheMarginAroundThePart) {
   const Grid grid{{1, 1, 1}, {2, 2, 1}};
   const Mesh mesh = box({0, 0, 0}, {2, 2, 1});
-  const JobBox job = job_box(bounding_box(mesh), grid, {10, 20}, {3, 2});
+  const JobBox job = job_box(bounding_box(mesh).max, grid, {10, 20}, {3, 2});
   EXPECT_EQ(job.size_px, (std::array<int, 3>{6, 4, 1}));
   EXPECT_EQ(job.bed_px, (std::array<int, 3>{8, 19, 0}));
   const std::vector<RunLayer> slices = all_slices(mesh, grid, job);
@@ -107,7 +107,7 @@ TEST(Voxelize, PutsTheMarginAroundThePart) {
 TEST(Voxelize, StartsInTheMiddleWithTheSameLayers) {
   const Grid grid{{0.2, 0.2, 0.1}, {1, 1, 2}};
   const auto mesh = std::make_shared<const Mesh>(at_origin(models::sphere(2, 4)));
-  const JobBox job = job_box(bounding_box(*mesh), grid, {0, 0}, {0, 0});
+  const JobBox job = job_box(bounding_box(*mesh).max, grid, {0, 0}, {0, 0});
   const auto whole = voxelize(mesh, grid, job, {0, job.size_px[2]})->next(job.size_px[2]);
   const auto share = voxelize(mesh, grid, job, {11, 15})->next(100);
   ASSERT_EQ(share.size(), 4U);

@@ -34,7 +34,7 @@ const InverseLayer* layer_at(LayerWindow layers, int offset) {
              : layers[static_cast<std::size_t>(at)].get();
 }
 
-ModelOffsets offsets_of(const ModelForm& form) {
+ModelOffsets offsets_of(const AssembledModel& form) {
   ModelOffsets offsets;
   for (const DoseTerm& term : form.terms) offsets.printed.insert(-term.layer);
   for (const int printed : offsets.printed) {

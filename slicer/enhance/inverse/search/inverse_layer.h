@@ -45,7 +45,7 @@ struct ModelOffsets {
   std::set<int> printed;
   std::set<int> masks;
 };
-ModelOffsets offsets_of(const ModelForm& form);
+ModelOffsets offsets_of(const AssembledModel& form);
 
 // The masks so far that the model wants to see for the layer at `offset`.
 std::vector<const RunLayer*> masks_around(LayerWindow layers, int offset,

@@ -66,7 +66,7 @@ Stamp stamp_of(std::span<const DoseTerm> terms, int layer, const Grid& grid, int
   return stamp;
 }
 
-bool same_dose(const ModelForm& a, const ModelForm& b) {
+bool same_dose(const AssembledModel& a, const AssembledModel& b) {
   return a.placed.gains.empty() &&
          std::equal(a.terms.begin(), a.terms.end(), b.terms.begin(), b.terms.end(),
                     [](const DoseTerm& s, const DoseTerm& t) {
@@ -74,20 +74,20 @@ bool same_dose(const ModelForm& a, const ModelForm& b) {
                     });
 }
 
-int least_dose(const ModelForm& form, const std::vector<Stamp>& stamps, int unit) {
+int least_dose(const AssembledModel& form, const std::vector<Stamp>& stamps, int unit) {
   // Each pixel in reach may be half a unit off.
   std::size_t pixels = 1;
   for (const Stamp& stamp : stamps) pixels += stamp.dose.size();
   return static_cast<int>(std::lround(form.level * unit)) - static_cast<int>(pixels / 2);
 }
 
-int dose_unit(const ModelForm& form) {
+int dose_unit(const AssembledModel& form) {
   double gains = 0;
   for (const DoseTerm& term : form.terms) gains += std::abs(term.gain);
   return static_cast<int>((1 << 29) / std::max(1.0, gains));
 }
 
-StampedModel stamped(const ModelForm& form, const Grid& grid) {
+StampedModel stamped(const AssembledModel& form, const Grid& grid) {
   StampedModel model;
   model.terms = form.terms;
   model.unit = dose_unit(form);
@@ -104,10 +104,10 @@ StampedModel stamped(const ModelForm& form, const Grid& grid) {
 std::vector<StampedModel> stamped(std::span<const PrinterModel> models,
                                   std::span<const int> weights, const Grid& grid) {
   std::vector<StampedModel> out;
-  std::vector<const ModelForm*> forms;
+  std::vector<const AssembledModel*> forms;
   for (std::size_t m = 0; m < models.size(); ++m) {
-    const ModelForm& form = models[m].form();
-    const auto known = std::find_if(forms.begin(), forms.end(), [&](const ModelForm* other) {
+    const AssembledModel& form = models[m].form();
+    const auto known = std::find_if(forms.begin(), forms.end(), [&](const AssembledModel* other) {
       return same_dose(form, *other);
     });
     const auto at = static_cast<std::size_t>(known - forms.begin());

@@ -10,7 +10,7 @@ namespace binderjet {
 WindowPlaces::WindowPlaces(const PrinterModel& model, const Grid& grid, LayerWindow layers,
                            const ModelOffsets& offsets)
     : model_(model), grid_(grid), number_(layer_at(layers, 0)->number) {
-  const ModelForm& form = model.form();
+  const AssembledModel& form = model.form();
   const int width = layer_at(layers, 0)->mask->width();
   if (!form.placed.shifts.empty()) {
     for (const int offset : offsets.masks) {
@@ -36,7 +36,7 @@ std::array<int, 2> WindowPlaces::most_shift_vx() const {
 
 double WindowPlaces::gain(int offset, int x_vx, int y_vx) const {
   const auto density = densities_.find(offset);
-  const ModelForm& form = model_.form();
+  const AssembledModel& form = model_.form();
   return gain_at_voxel(grid_, form.place, form.placed,
                        density == densities_.end() ? nullptr : &density->second, x_vx, y_vx,
                        number_ + offset);

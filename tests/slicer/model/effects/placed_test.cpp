@@ -125,7 +125,7 @@ TEST(PlacedEffects, WeakensRowsAroundAJetByTheBinderThatTheyWouldGetFromIt) {
       model({"jet_out", {}, {{"from_mm", {1.0}}, {"to_mm", {1.1}}, {"amount", {-1}}}});
   EXPECT_EQ(out.print(bar()), plain.print(without));
   // Half of a jet's row, whatever the grid: half as much is missing in all.
-  const ModelForm& form = plain.form();
+  const AssembledModel& form = plain.form();
   const auto whole_row = share_from_jets(form, kGrid, 1.0, 1.1);
   const auto half_row = share_from_jets(form, kGrid, 1.0, 1.05);
   double whole = 0;
@@ -162,7 +162,7 @@ TEST(PlacedEffects, KnowsWhereTheJobIsOnTheBed) {
 
 TEST(PlacedEffects, BindsFlatFieldsWhereTheGainLiftsThemOverTheLevel) {
   // A wide field at a dose of 0.45 everywhere; the gain passes 1/0.9 in the middle of the bed only.
-  ModelForm form;
+  AssembledModel form;
   form.level = 0.5;
   form.terms.front().gain = 0.45;
   form.placed.gains.push_back(

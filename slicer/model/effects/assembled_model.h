@@ -1,0 +1,65 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// What the effects of a model add up to: each effect writes its forward form into it.
+#pragma once
+
+#include <array>
+#include <functional>
+#include <memory>
+#include <span>
+#include <vector>
+
+#include "slicer/layers/grid.h"
+#include "slicer/layers/run_layer.h"
+#include "slicer/model/dose/dose_filter.h"
+#include "slicer/model/dose/placed_dose.h"
+#include "slicer/model/effects/effect.h"
+
+namespace binderjet {
+
+// Layer k gets the mask of layer k + by(k), |by| <= most, both in layers of the job.
+struct LayerMove {
+  std::function<int(int)> by;
+  int most;
+};
+
+// What happens to printed voxels once they are bound: a layer from the printed layers around it,
+// as many below as above; null is beyond the job.
+struct Wear {
+  Reach reach;
+  std::function<RunLayer(std::span<const RunLayer* const>)> apply;
+};
+
+// What the effects of a model add up to. Each effect's forward form writes its share into it, so
+// simulate, enhance and calibrate know this form and no effect by name.
+struct AssembledModel {
+  // The dose is the sum of these. Before any effect a pixel's binder stays in its pixel.
+  std::vector<DoseTerm> terms{DoseTerm{}};
+  double level = 0;  // a voxel is bound iff its dose is at least this; 0: no effect has said so
+  // Bound powder that holds no such box (voxels in x and y) is brushed off.
+  std::vector<std::array<int, 2>> survive_vx;
+  // In their order, after that.
+  std::vector<Wear> wear;
+  std::vector<LayerMove> moves;
+  // What depends on the place on the bed, in mm; `place` is where the job is on it.
+  PlacedDose placed;
+  JobPlace place;
+
+  // Shifts every mask by by_mm(spot); neither component is ever larger than that of `most_mm`.
+  void shift(std::function<std::array<double, 2>(const Spot&)> by_mm,
+             const std::array<double, 2>& most_mm);
+  // Asks for Spot::density; Error{kBadInput} if another effect asks for another radius.
+  void ask_density(double radius_mm);
+  // Declares the level; Error{kBadInput} if another effect already has.
+  void bind_at(double new_level);
+  Reach reach(const Grid& grid) const;
+
+  // The masks that layers around layer `layer` really get. Those whose mask is beyond the window
+  // get null; if the middle one is, it gets `powder`.
+  struct Received {
+    std::vector<const RunLayer*> masks;
+    std::shared_ptr<const RunLayer> powder;
+  };
+  Received received(std::span<const RunLayer* const> window, int layer) const;
+};
+
+}  // namespace binderjet
