@@ -5,7 +5,7 @@
 #include <utility>
 
 #include "slicer/base/error.h"
-#include "transport/result.h"
+#include "transport/base/result.h"
 
 namespace binderjet {
 

@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "driver/base/transport_errors.h"
-#include "transport/job_file.h"
+#include "transport/job/job_file.h"
 
 namespace binderjet {
 namespace {

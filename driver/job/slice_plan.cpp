@@ -16,7 +16,7 @@
 #include "slicer/color/skin.h"
 #include "slicer/enhance/masks.h"
 #include "slicer/model/printer_model.h"
-#include "transport/job_file.h"
+#include "transport/job/job_file.h"
 
 namespace binderjet {
 namespace {

@@ -11,7 +11,7 @@
 
 #include "driver/base/files.h"
 #include "slicer/base/error.h"
-#include "transport/usb_quirks.h"
+#include "transport/usb/usb_quirks.h"
 
 namespace binderjet {
 namespace {

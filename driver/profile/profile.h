@@ -34,7 +34,7 @@ struct Profile {
   MaskRules mask;
   ColorSettings color;
   std::string protocol;
-  std::vector<std::string> usb;  // "vid:pid", then words of transport/usb_quirks.h
+  std::vector<std::string> usb;  // "vid:pid", then words of transport/usb/usb_quirks.h
 
   // The grid with the default layer or the one asked for; Error{kUsage} if the printer has no such.
   Grid grid(std::optional<double> layer) const;

@@ -8,7 +8,7 @@
 
 #include "driver/base/console.h"
 #include "driver/job/slice_plan.h"
-#include "transport/backend.h"
+#include "transport/base/backend.h"
 
 namespace CLI {
 class App;

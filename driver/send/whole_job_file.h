@@ -4,7 +4,7 @@
 
 #include <string>
 
-#include "transport/job_file.h"
+#include "transport/job/job_file.h"
 
 namespace binderjet {
 

@@ -11,7 +11,7 @@
 #include "driver/base/transport_errors.h"
 #include "driver/send/whole_job_file.h"
 #include "driver/verbs/verbs.h"
-#include "transport/job_file.h"
+#include "transport/job/job_file.h"
 
 namespace binderjet {
 

@@ -10,7 +10,7 @@
 #include "driver/base/transport_errors.h"
 #include "driver/job/slice_plan.h"
 #include "driver/verbs/verbs.h"
-#include "transport/job_file.h"
+#include "transport/job/job_file.h"
 
 namespace binderjet {
 namespace {

@@ -12,7 +12,7 @@
 #include <vector>
 
 #include "tests/support/program.h"
-#include "transport/job_file.h"
+#include "transport/job/job_file.h"
 
 namespace binderjet::bench {
 

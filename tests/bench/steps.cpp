@@ -22,7 +22,7 @@
 #include "slicer/score/voxel_counts.h"
 #include "slicer/stack/png.h"
 #include "slicer/voxels/slicing_operator.h"
-#include "transport/job_file.h"
+#include "transport/job/job_file.h"
 
 namespace binderjet {
 namespace {

@@ -20,7 +20,7 @@
 #include "slicer/model/printer_model.h"
 #include "slicer/stack/slice_stack.h"
 #include "tests/fuzz/targets.h"
-#include "transport/job_file.h"
+#include "transport/job/job_file.h"
 
 namespace binderjet {
 namespace {

@@ -9,11 +9,11 @@
 #include <string_view>
 
 #include "tests/printer/emulator/printer_emulator.h"
-#include "transport/bytes.h"
-#include "transport/frame.h"
-#include "transport/job_format.h"
-#include "transport/protocol.h"
-#include "transport/usb_quirks.h"
+#include "transport/base/bytes.h"
+#include "transport/job/job_format.h"
+#include "transport/usb/frame.h"
+#include "transport/usb/protocol.h"
+#include "transport/usb/usb_quirks.h"
 
 namespace binderjet {
 namespace {

@@ -17,7 +17,7 @@
 #include <string>
 #include <vector>
 
-#include "transport/job_file.h"
+#include "transport/job/job_file.h"
 
 namespace binderjet {
 

@@ -11,7 +11,7 @@
 #include "tests/printer/emulator/printed_volume.h"
 #include "tests/printer/emulator/printer_fixture.h"
 #include "tests/printer/emulator/usbip_server.h"
-#include "transport/bytes.h"
+#include "transport/base/bytes.h"
 
 namespace binderjet {
 namespace {

@@ -9,7 +9,7 @@
 #include <stdexcept>
 
 #include "slicer/stack/slice_stack.h"
-#include "transport/job_format.h"
+#include "transport/job/job_format.h"
 
 namespace binderjet {
 namespace {

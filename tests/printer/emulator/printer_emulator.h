@@ -16,8 +16,8 @@
 
 #include "tests/printer/emulator/fault_plan.h"
 #include "tests/printer/emulator/usb_device.h"
-#include "transport/frame.h"
-#include "transport/protocol.h"
+#include "transport/usb/frame.h"
+#include "transport/usb/protocol.h"
 
 namespace binderjet {
 

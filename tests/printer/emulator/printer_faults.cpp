@@ -4,7 +4,7 @@
 #include <utility>
 
 #include "tests/printer/emulator/printer_emulator.h"
-#include "transport/bytes.h"
+#include "transport/base/bytes.h"
 
 namespace binderjet {
 

@@ -4,7 +4,7 @@
 
 compare.py CAPTURE.pcap JOB.bjob [SPOOLED.bjob]
 
-tshark decodes the capture. Frames (transport/PROTOCOL.md) and job files (transport/job_format.h)
+tshark decodes the capture. Frames (transport/PROTOCOL.md) and job files (transport/job/job_format.h)
 are taken apart here, by the pages that describe them and not by the program's own code.
 """
 import hashlib

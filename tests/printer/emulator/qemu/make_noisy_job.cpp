@@ -10,7 +10,7 @@
 
 #include "driver/job/job.h"
 #include "driver/profile/profile.h"
-#include "transport/job_file.h"
+#include "transport/job/job_file.h"
 
 namespace {
 

@@ -1,0 +1,204 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The spool's folders and how jobs move between them.
+#include "transport/spool/spool.h"
+
+#include <fmt/core.h>
+#include <sys/file.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <array>
+#include <cerrno>
+#include <charconv>
+#include <filesystem>
+#include <optional>
+#include <utility>
+
+#include "transport/job/job_file.h"
+
+namespace binderjet {
+namespace {
+
+namespace fs = std::filesystem;
+
+std::uint64_t id_number(std::string_view text) {
+  std::uint64_t number = 0;
+  std::from_chars(text.data(), text.data() + text.size(), number);
+  return number;
+}
+
+Result<void> move_synced(const std::string& from, const std::string& to) {
+  if (auto done = rename_path(from, to); !done) return done;
+  if (auto done = sync_folder(folder_of(to)); !done) return done;
+  return sync_folder(folder_of(from));
+}
+
+bool has_line(const std::string& path) {
+  const Result<File> file = open_file(path, O_RDONLY);
+  if (!file) return path_exists(path);
+  std::array<std::byte, 4096> some{};
+  const ssize_t size = pread(file->fd(), some.data(), some.size(), 0);
+  // A start line longer than this has at least been begun in earnest: keep it.
+  return size == static_cast<ssize_t>(some.size()) ||
+         std::find(some.begin(), some.begin() + std::max<ssize_t>(size, 0), std::byte{'\n'}) !=
+             some.begin() + std::max<ssize_t>(size, 0);
+}
+
+}  // namespace
+
+bool is_job_id(const std::string& text) {
+  return !text.empty() && text.size() <= 18 && text[0] != '0' &&
+         std::all_of(text.begin(), text.end(), [](char c) { return c >= '0' && c <= '9'; });
+}
+
+Result<void> Spool::create() const {
+  for (const char* place : {"", "/incoming", "/held", "/done"}) {
+    if (path_exists(folder_ + place)) continue;
+    if (auto done = make_folder(folder_ + place); !done) return done;
+    if (auto done = sync_folder(folder_of(folder_ + place)); !done) return done;
+  }
+  const Result<File> counter = open_file(folder_ + "/last-id", O_RDWR | O_CREAT);
+  if (!counter) return tl::unexpected(counter.error());
+  return {};
+}
+
+Result<File> Spool::lock() const {
+  if (!path_exists(folder_ + "/last-id")) {
+    return tl::unexpected(Fault{FaultKind::kDevice, "spool:" + folder_,
+                                "no spool is here; printing to it makes one"});
+  }
+  Result<File> file = open_file(folder_ + "/last-id", O_RDWR);
+  if (!file) return file;
+  while (flock(file->fd(), LOCK_EX) != 0) {
+    if (errno != EINTR) return tl::unexpected(system_fault(errno, folder_, "cannot lock it"));
+  }
+  recover();
+  return file;
+}
+
+std::vector<std::string> Spool::ids(const std::string& place) const {
+  std::vector<std::string> found;
+  std::error_code error;
+  for (fs::directory_iterator i(folder_ + "/" + place, error), end; !error && i != end;
+       i.increment(error)) {
+    std::string name = i->path().filename().string();
+    if (place == "done") {
+      if (!name.ends_with(".bjob")) continue;
+      name.resize(name.size() - 5);
+    }
+    if (is_job_id(name)) found.push_back(std::move(name));
+  }
+  std::sort(found.begin(), found.end(),
+            [](const std::string& a, const std::string& b) { return id_number(a) < id_number(b); });
+  return found;
+}
+
+Result<std::string> Spool::new_id(const File& lock) const {
+  std::array<char, 20> text{};
+  const ssize_t size = pread(lock.fd(), text.data(), text.size(), 0);
+  std::uint64_t last =
+      id_number({text.data(), static_cast<std::size_t>(std::max<ssize_t>(size, 0))});
+  // The counter alone would do, had nobody ever copied or cleaned a spool by hand.
+  for (const char* place : {"incoming", "held", "done"}) {
+    for (const std::string& id : ids(place)) last = std::max(last, id_number(id));
+  }
+  const std::string next = std::to_string(last + 1);
+  if (pwrite(lock.fd(), next.data(), next.size(), 0) != static_cast<ssize_t>(next.size())) {
+    return tl::unexpected(system_fault(errno, folder_ + "/last-id", "cannot write"));
+  }
+  if (auto done = sync_file(lock, folder_ + "/last-id"); !done) {
+    return tl::unexpected(done.error());
+  }
+  return next;
+}
+
+Result<void> Spool::hold(const std::string& id) const {
+  return move_synced(incoming(id), held(id));
+}
+
+Result<void> Spool::unhold(const std::string& id) const {
+  return move_synced(held(id), incoming(id));
+}
+
+Result<void> Spool::file_away(const std::string& id) const {
+  if (auto done = move_synced(incoming(id) + "/journal", done_journal(id)); !done) return done;
+  return remove(incoming(id));
+}
+
+Result<void> Spool::remove(const std::string& job_folder) const {
+  for (const char* name : {"/journal", "/job.part", "/cancel"}) {
+    if (unlink((job_folder + name).c_str()) != 0 && errno != ENOENT) {
+      return tl::unexpected(system_fault(errno, job_folder + name, "cannot remove it"));
+    }
+  }
+  if (rmdir(job_folder.c_str()) != 0) {
+    return tl::unexpected(system_fault(errno, job_folder, "cannot remove it"));
+  }
+  return sync_folder(folder_of(job_folder));
+}
+
+// One job that cannot be put in order, by the rights of its files say, must not block the others:
+// it stays where it is.
+void Spool::recover() const {
+  for (const std::string& id : ids("incoming")) {
+    const std::string folder = incoming(id);
+    const std::string journal_path = folder + "/journal";
+    // A sender starts and ends a job with the spool's lock, which is ours: a job without a whole
+    // line in its journal has a sender that died before start returned, or a job that was removed.
+    if (!has_line(journal_path)) {
+      static_cast<void>(remove(folder));
+      continue;
+    }
+    const Result<std::optional<Journal>> journal = Journal::open(journal_path);
+    if (!journal || !journal->has_value()) continue;  // its sender lives
+    if (path_exists(done_job(id))) {
+      static_cast<void>(file_away(id));
+    } else if (path_exists(folder + "/cancel")) {
+      static_cast<void>(remove(folder));
+    } else {
+      static_cast<void>(hold(id));
+    }
+  }
+  for (const std::string& id : ids("held")) {
+    if (!has_line(held(id) + "/journal")) static_cast<void>(remove(held(id)));
+  }
+}
+
+Result<std::vector<JobStatus>> Spool::jobs() const {
+  std::vector<JobStatus> all;
+  const auto add = [&all](const std::string& id, JobState state, const std::string& journal_path) {
+    const Result<JournalState> journal = Journal::peek(journal_path);
+    JobStatus status{id, state, 0, 0, "", "", ""};
+    if (journal && journal->started) {
+      status.layer_count = journal->layer_count;
+      status.acknowledged = journal->acknowledged;
+      status.name = journal->name;
+      status.source = journal->source;
+      if (state == JobState::kHeld) {
+        status.reason = journal->held.empty() ? "its sender died" : journal->held;
+      }
+    } else {
+      status.reason = "its journal is damaged: cancel it and print again";
+    }
+    all.push_back(std::move(status));
+  };
+  for (const std::string& id : ids("incoming")) {
+    add(id, JobState::kIncoming, incoming(id) + "/journal");
+  }
+  for (const std::string& id : ids("held")) add(id, JobState::kHeld, held(id) + "/journal");
+  for (const std::string& id : ids("done")) {
+    add(id, JobState::kDone, done_journal(id));
+    if (path_exists(done_journal(id))) continue;
+    // A death between the two renames of the end, or somebody's tidying: the job itself is whole.
+    const Result<JobReader> job = JobReader::open(done_job(id));
+    const int layers = job ? static_cast<int>(job->layers(RecordKind::kMask).size()) : 0;
+    all.back() = {
+        id, JobState::kDone, layers, layers, "", "", job ? job->damage() : job.error().what};
+  }
+  std::sort(all.begin(), all.end(), [](const JobStatus& a, const JobStatus& b) {
+    return id_number(a.id) < id_number(b.id);
+  });
+  return all;
+}
+
+}  // namespace binderjet
