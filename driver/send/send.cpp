@@ -18,6 +18,7 @@
 #include "driver/job/layer_queue.h"
 #include "driver/send/whole_job_file.h"
 #include "slicer/base/error.h"
+#include "transport/open/open_backend.h"
 
 namespace binderjet {
 namespace {

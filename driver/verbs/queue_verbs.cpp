@@ -12,6 +12,7 @@
 #include "driver/base/transport_errors.h"
 #include "driver/send/send.h"
 #include "slicer/base/error.h"
+#include "transport/usb/usb_backend.h"
 
 namespace binderjet {
 namespace {

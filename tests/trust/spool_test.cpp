@@ -8,7 +8,7 @@
 #include "tests/support/models.h"
 #include "tests/support/program.h"
 #include "tests/transport/sample_job.h"
-#include "transport/base/backend.h"
+#include "transport/open/open_backend.h"
 
 namespace binderjet {
 namespace {

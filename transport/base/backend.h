@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What takes a job, whatever it is: a device, a folder or a file, chosen by its URI.
+// What takes a job, whatever it is: a device, a folder or a file. open/ chooses one by its URI.
 #pragma once
 
 #include <cstddef>
@@ -75,21 +75,5 @@ struct BackendOptions {
   std::vector<std::string> usb_models;  // "vid:pid word..." that usb: may mean, with their quirks
   std::function<bool()> stop_asked;     // asked during waits; true ends them with kInterrupted
 };
-
-// file:PATH, spool:DIR or usb:... Touches nothing yet. An unknown scheme is kBadInput.
-Result<std::unique_ptr<Backend>> open_backend(const std::string& uri,
-                                              const BackendOptions& options = {});
-
-std::unique_ptr<Backend> make_file_backend(const std::string& path);
-std::unique_ptr<Backend> make_spool_backend(const std::string& folder);
-// A printer that speaks binderjet-1 (PROTOCOL.md). A URI that is none is kBadInput.
-Result<std::unique_ptr<Backend>> make_usb_backend(const std::string& uri,
-                                                  const BackendOptions& options);
-
-// The USB printers that are plugged in and known.
-Result<std::vector<DeviceStatus>> list_usb_devices(const BackendOptions& options);
-// Waits until the printer of a usb: URI is plugged in; false when the time is over or a stop is
-// asked for.
-bool wait_for_usb_device(const std::string& uri, const BackendOptions& options, double seconds);
 
 }  // namespace binderjet

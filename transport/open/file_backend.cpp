@@ -5,8 +5,8 @@
 #include <optional>
 #include <utility>
 
-#include "transport/base/backend.h"
 #include "transport/job/job_file.h"
+#include "transport/open/open_backend.h"
 
 namespace binderjet {
 namespace {

@@ -11,6 +11,7 @@
 // Who sends a job holds its journal's lock. Nothing under incoming/ that is unlocked has a sender.
 #pragma once
 
+#include <memory>
 #include <string>
 #include <utility>
 #include <vector>
@@ -64,5 +65,8 @@ class Spool {
 
 // Ids are decimal numbers without leading zeros; anything else could be a path.
 bool is_job_id(const std::string& text);
+
+// What spool:FOLDER means.
+std::unique_ptr<Backend> make_spool_backend(const std::string& folder);
 
 }  // namespace binderjet

@@ -7,7 +7,7 @@
 #include <optional>
 #include <utility>
 
-#include "transport/base/backend.h"
+#include "transport/spool/spool.h"
 #include "transport/spool/spooled_job.h"
 
 namespace binderjet {

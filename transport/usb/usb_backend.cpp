@@ -4,6 +4,8 @@
 //
 // The journals live in a spool of their own (spool.h). Its job files hold the header and no layer:
 // the layers are in the printer, and what is still to come is read from the job or computed again.
+#include "transport/usb/usb_backend.h"
+
 #include <fmt/core.h>
 #include <sys/random.h>
 #include <unistd.h>
@@ -15,7 +17,6 @@
 #include <thread>
 #include <utility>
 
-#include "transport/base/backend.h"
 #include "transport/spool/spooled_job.h"
 #include "transport/usb/usb_job.h"
 

@@ -13,7 +13,7 @@
 #include "tests/printer/emulator/printer_emulator.h"
 #include "tests/printer/emulator/umockdev_bus.h"
 #include "tests/transport/sample_job.h"
-#include "transport/base/backend.h"
+#include "transport/open/open_backend.h"
 
 namespace binderjet {
 

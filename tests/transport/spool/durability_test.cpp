@@ -9,7 +9,7 @@
 #include <filesystem>
 
 #include "tests/transport/sample_job.h"
-#include "transport/base/backend.h"
+#include "transport/open/open_backend.h"
 
 namespace {
 

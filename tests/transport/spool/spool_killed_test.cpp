@@ -12,7 +12,7 @@
 #include <set>
 
 #include "tests/transport/sample_job.h"
-#include "transport/base/backend.h"
+#include "transport/open/open_backend.h"
 
 namespace binderjet {
 namespace {

@@ -6,7 +6,7 @@
 #include <gtest/gtest.h>
 
 #include "tests/transport/sample_job.h"
-#include "transport/base/backend.h"
+#include "transport/open/open_backend.h"
 #include "transport/spool/journal.h"
 
 namespace binderjet {

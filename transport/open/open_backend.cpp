@@ -1,22 +1,13 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The URI's scheme chooses the backend.
-#include "transport/base/backend.h"
+#include "transport/open/open_backend.h"
 
 #include <string_view>
 
-namespace binderjet {
+#include "transport/spool/spool.h"
+#include "transport/usb/usb_backend.h"
 
-const char* job_state_word(JobState state) {
-  switch (state) {
-    case JobState::kIncoming:
-      return "incoming";
-    case JobState::kHeld:
-      return "held";
-    case JobState::kDone:
-      break;
-  }
-  return "done";
-}
+namespace binderjet {
 
 Result<std::unique_ptr<Backend>> open_backend(const std::string& uri,
                                               const BackendOptions& options) {
