@@ -12,7 +12,7 @@
 #include "slicer/base/error.h"
 #include "slicer/base/strict_json.h"
 #include "slicer/enhance/inverse/inverse_solver.h"
-#include "slicer/mesh/read_mesh.h"
+#include "slicer/mesh/read/read_mesh.h"
 #include "slicer/mesh/repair.h"
 #include "slicer/model/process_window.h"
 

@@ -7,7 +7,7 @@
 #include <utility>
 
 #include "slicer/base/error.h"
-#include "slicer/mesh/read_mesh.h"
+#include "slicer/mesh/read/read_mesh.h"
 #include "slicer/stack/slice_stack.h"
 #include "slicer/voxels/voxelize.h"
 

@@ -11,11 +11,11 @@
 #include <numeric>
 #include <utility>
 
+#include "slicer/base/counted.h"
 #include "slicer/base/error.h"
 #include "slicer/mesh/boundary.h"
 #include "slicer/mesh/crossings.h"
 #include "slicer/mesh/holes.h"
-#include "slicer/mesh/readers.h"
 #include "slicer/mesh/shells.h"
 #include "slicer/mesh/wall.h"
 #include "slicer/mesh/weld.h"

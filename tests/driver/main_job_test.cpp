@@ -7,7 +7,7 @@
 #include <cmath>
 
 #include "slicer/mesh/boundary.h"
-#include "slicer/mesh/read_mesh.h"
+#include "slicer/mesh/read/read_mesh.h"
 #include "slicer/stack/slice_stack.h"
 #include "tests/support/models.h"
 #include "tests/support/program.h"

@@ -16,7 +16,7 @@
 #include "slicer/base/error.h"
 #include "slicer/calibrate/gauges/gauge_slots.h"
 #include "slicer/calibrate/gauges/length_blocks.h"
-#include "slicer/mesh/read_mesh.h"
+#include "slicer/mesh/read/read_mesh.h"
 #include "slicer/model/printer_model.h"
 #include "slicer/stack/slice_stack.h"
 #include "tests/fuzz/targets.h"

@@ -7,7 +7,7 @@
 #include <string>
 
 #include "slicer/coupon/coupon.h"
-#include "slicer/mesh/read_mesh.h"
+#include "slicer/mesh/read/read_mesh.h"
 #include "slicer/mesh/repair.h"
 #include "tests/hidden_printers/second_print.h"
 

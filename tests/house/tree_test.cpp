@@ -43,6 +43,15 @@ TEST_F(Tree, HasNoLineThatUsesMoreThanItsRoomIncludes) {
   EXPECT_THAT(idle_uses(tree_, rooms_), IsEmpty());
 }
 
+// As many as a reader looks over at once. The effects have a file each, which their names tell.
+TEST_F(Tree, HasNoRoomOfMoreThanThirtyFiles) {
+  std::vector<Room> rooms;
+  for (const Room& room : rooms_) {
+    if (room.name != "slicer/model/effects") rooms.push_back(room);
+  }
+  EXPECT_THAT(crowded_rooms(tree_, rooms, 30), IsEmpty());
+}
+
 TEST_F(Tree, IsMirroredByTheTests) {
   std::vector<std::string> without;
   for (const std::string top : {"slicer", "driver", "transport"}) {

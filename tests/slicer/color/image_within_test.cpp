@@ -6,7 +6,7 @@
 
 #include <cmath>
 
-#include "slicer/mesh/read_mesh.h"
+#include "slicer/mesh/read/read_mesh.h"
 #include "tests/slicer/color/colored_layers.h"
 #include "tests/support/scene_files.h"
 

@@ -7,7 +7,7 @@
 #include <set>
 
 #include "slicer/base/error.h"
-#include "slicer/mesh/read_mesh.h"
+#include "slicer/mesh/read/read_mesh.h"
 #include "tests/slicer/color/colored_layers.h"
 
 namespace binderjet {

@@ -6,7 +6,7 @@
 
 #include "slicer/base/error.h"
 #include "slicer/base/whole_file.h"
-#include "slicer/mesh/read_mesh.h"
+#include "slicer/mesh/read/read_mesh.h"
 #include "slicer/stack/png.h"
 #include "tests/slicer/color/colored_layers.h"
 

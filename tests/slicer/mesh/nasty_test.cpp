@@ -13,7 +13,7 @@
 #include "slicer/base/error.h"
 #include "slicer/mesh/boundary.h"
 #include "slicer/mesh/place.h"
-#include "slicer/mesh/read_mesh.h"
+#include "slicer/mesh/read/read_mesh.h"
 #include "slicer/mesh/repair.h"
 
 namespace binderjet {

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "slicer/mesh/materials.h"
+#include "slicer/mesh/read/materials.h"
 
 #include <algorithm>
 #include <array>
 #include <cctype>
 
-#include "slicer/mesh/input_file.h"
+#include "slicer/mesh/read/input_file.h"
 
 namespace binderjet {
 namespace {

@@ -11,8 +11,8 @@
 #include <vector>
 
 #include "slicer/base/error.h"
-#include "slicer/mesh/materials.h"
-#include "slicer/mesh/readers.h"
+#include "slicer/mesh/read/materials.h"
+#include "slicer/mesh/read/readers.h"
 
 namespace binderjet {
 namespace {

@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "slicer/mesh/boundary.h"
-#include "slicer/mesh/read_mesh.h"
+#include "slicer/mesh/read/read_mesh.h"
 #include "tests/slicer/mesh/samples.h"
 #include "tests/support/scene_files.h"
 

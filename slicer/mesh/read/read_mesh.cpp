@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The choice of a reader, and the checks that every mesh has to pass.
-#include "slicer/mesh/read_mesh.h"
+#include "slicer/mesh/read/read_mesh.h"
 
 #include <fmt/format.h>
 
@@ -11,7 +11,7 @@
 #include <new>
 
 #include "slicer/base/error.h"
-#include "slicer/mesh/readers.h"
+#include "slicer/mesh/read/readers.h"
 
 namespace binderjet {
 namespace {
@@ -112,10 +112,6 @@ void check_claim(const InputFile& file, const std::string& where, std::int64_t c
                     "it again",
                     count, things, file.size()));
   }
-}
-
-std::string counted(std::int64_t count, const std::string& one, const std::string& many) {
-  return fmt::format("{} {}", count, count == 1 ? one : many);
 }
 
 }  // namespace binderjet

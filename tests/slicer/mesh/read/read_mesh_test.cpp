@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Every format gives the same box, and every fault an error that says where.
-#include "slicer/mesh/read_mesh.h"
+#include "slicer/mesh/read/read_mesh.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

@@ -13,7 +13,7 @@
 #include <vector>
 
 #include "slicer/base/error.h"
-#include "slicer/mesh/readers.h"
+#include "slicer/mesh/read/readers.h"
 
 namespace binderjet {
 namespace {

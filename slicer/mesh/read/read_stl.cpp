@@ -13,7 +13,7 @@
 
 #include "slicer/base/error.h"
 #include "slicer/mesh/boundary.h"
-#include "slicer/mesh/readers.h"
+#include "slicer/mesh/read/readers.h"
 #include "slicer/mesh/weld.h"
 
 namespace binderjet {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Buffered lines, bytes, words and numbers of a model file.
-#include "slicer/mesh/input_file.h"
+#include "slicer/mesh/read/input_file.h"
 
 #include <algorithm>
 #include <cerrno>

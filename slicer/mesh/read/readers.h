@@ -11,8 +11,9 @@
 #include <span>
 #include <string>
 
-#include "slicer/mesh/input_file.h"
-#include "slicer/mesh/read_mesh.h"
+#include "slicer/base/counted.h"
+#include "slicer/mesh/read/input_file.h"
+#include "slicer/mesh/read/read_mesh.h"
 
 namespace binderjet {
 
@@ -32,8 +33,5 @@ void add_polygon(Mesh& mesh, std::span<const int> corners);
 // before anything is allocated, and int can index them.
 void check_claim(const InputFile& file, const std::string& where, std::int64_t count,
                  std::int64_t bytes, const std::string& things);
-
-// "1 facet", "2 facets".
-std::string counted(std::int64_t count, const std::string& one, const std::string& many);
 
 }  // namespace binderjet

@@ -34,7 +34,7 @@
 #include <vector>
 
 #include "slicer/base/error.h"
-#include "slicer/mesh/readers.h"
+#include "slicer/mesh/read/readers.h"
 #include "slicer/mesh/weld.h"
 
 namespace binderjet {
