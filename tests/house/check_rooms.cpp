@@ -16,12 +16,11 @@ int main(int argc, char** argv) {
     return 2;
   }
   const std::vector<File> tree = read_tree(argv[1], rooms);
-  bool right = true;
+  // One after the other: a cycle is mostly what an include against the rule brings with it.
   for (const auto& check : {strays, includes_against_the_rule, cycles}) {
-    for (const std::string& line : check(tree, rooms)) {
-      std::cerr << line << '\n';
-      right = false;
-    }
+    const std::vector<std::string> wrong = check(tree, rooms);
+    for (const std::string& line : wrong) std::cerr << line << '\n';
+    if (!wrong.empty()) return 1;
   }
-  return right ? 0 : 1;
+  return 0;
 }
