@@ -9,8 +9,10 @@
 
 namespace binderjet {
 
-// White powder, grey where print and prediction agree, red predicted and not printed, blue printed
-// and not predicted; row 0 of the voxel grid first, cut to what there is to see.
+// Pictures cut to what there is to see, row 0 of the voxel grid first:
+//
+//   white  powder          red   predicted and not printed
+//   gray   both solid      blue  printed and not predicted
 struct LayerPictures {
   int layer = 0;                         // its number in the job
   std::vector<std::byte> before, after;  // PNG files
@@ -18,8 +20,9 @@ struct LayerPictures {
   double wrong_before = 0, wrong_after = 0;  // |print xor prediction| / |print|, of this layer
 };
 
-// Of the layer in which the second model gains most over the first; or, where it gains nothing, in
-// which the first is most wrong. The print is the job's first; there must be one, with a layer.
+// Shows the layer in which the second model gains most over the first. Where the second model gains
+// nowhere, shows the layer in which the first is most wrong. The print is the job's first; there
+// must be one, with a layer.
 LayerPictures picture_layer(const MeasuredJob& job, const std::vector<EffectSpec>& before,
                             const std::vector<EffectSpec>& after);
 

@@ -8,10 +8,14 @@
 
 namespace binderjet {
 
-// Appends `layer` as changes to `reference`, which has rows of the same number; a stream of LEB128
-// varints, row by row: 0 if the row has as many flips as the reference's, then for each the zigzag
-// difference from the reference's flip; else the number of flips + 1, then for each its distance
-// from the one before (the first from 0).
+// Appends `layer` as changes to `reference`, a layer of the same height. The result is a stream of
+// LEB128 varints, row by row, in one of two forms:
+//
+//   as many flips as the reference    0, then for each flip zigzag(flip - the reference's flip)
+//   else, with n flips                n + 1, then for each flip its distance from the one before
+//                                     it, the first from 0
+//
+// zigzag(d) = d < 0 ? -2 d - 1 : 2 d, so small differences of either sign are one byte.
 void encode_runs(const RunLayer& layer, const RunLayer& reference, std::string& out);
 
 }  // namespace binderjet

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// calibration.json (DESIGN section 10).
+// calibration.json: what calibrate found (slicer/MODEL.md, How calibrate chooses), for scripts.
 #pragma once
 
 #include <nlohmann/json.hpp>

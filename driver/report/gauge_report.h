@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What gauges say, as one HTML page and as calibration.json (DESIGN section 10).
+// What gauges say (slicer/MODEL.md, How calibrate chooses), as one HTML page and as
+// calibration.json.
 #pragma once
 
 #include <nlohmann/json.hpp>

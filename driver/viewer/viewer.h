@@ -2,10 +2,16 @@
 // A job as one HTML page that needs no other file and no network: all layers, side by side.
 //
 // Layers lie in chunks of kChunkLayers, each a <script type="text/plain" id="chunkN"> of base64 of
-// zlib of varints (run_codec.h): for each layer the target's rz slices, each as changes to the one
-// before; the plain mask to the last layer's; the mask to the plain one; the print to the highest
-// slice. Without a target: the mask and the print, each to the last layer's. The first layer of a
-// chunk refers to powder. Color is a PNG for each layer, id="colorN", N from 0.
+// zlib of varints (run_codec.h). A layer is some pictures, each as changes to another one:
+//
+//   with a target      each of its rz slices      to the slice below
+//                      the plain mask             to the plain mask of the layer below
+//                      the mask                   to the plain mask
+//                      the print                  to the layer's highest slice
+//   without a target   the mask, and the print    to the same of the layer below
+//
+// For the first layer of a chunk the layer below is powder, so a chunk can be read by itself. Color
+// is a PNG for each layer, id="colorN", N from 0.
 #pragma once
 
 #include <string>

@@ -1,5 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Creases darkened: ambient occlusion and concavity at samples of the mesh, mixed like any color.
+//
+//   occluded = share of rays over the hemisphere that hit the mesh within the radius
+//   concave  = 2 * sum of heights above the tangent plane / sum of distances, over near samples
+//   dark     = strength * min(1, 1.5 occluded + concave)
+//
+// Occlusion is the coarse scale. Concavity is the fine one: near samples that lie above the tangent
+// plane are the walls of a groove.
 #include <CGAL/Orthogonal_k_neighbor_search.h>
 #include <CGAL/Search_traits_3.h>
 #include <CGAL/Search_traits_adapter.h>
@@ -167,7 +174,6 @@ std::shared_ptr<const ColorField> crease_field(std::shared_ptr<const ColorField>
     const Place& here = samples.places[i];
     const Vector& normal = samples.normals[i];
     const double occluded = occlusion(tree, here, normal, radius_mm, directions);
-    // Fine scale: neighbours above the tangent plane are the walls of a groove.
     double above = 0;
     double away = 0;
     const Search::Distance distance(map);

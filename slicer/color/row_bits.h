@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Rows of a layer as words, lowest bit first, and the boundary of a volume within a row.
+// Rows of a layer as words, lowest bit first, and the boundary of a volume within a row: of 64
+// voxels at once those that are solid and have a face neighbor that is not.
 #pragma once
 
 #include <bit>

@@ -1,6 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Nearest skin by a distance transform in bands of rows: along z, then x, then y, each over no more
-// than the depth.
+// Nearest skin by a distance transform, one axis after the other, each over no more than the depth:
+//
+//   cost(x, y, z) = min over dy of (dy py)^2 + min over dx of (dx px)^2 + min over dz of (dz L)^2
+//                   where (x + dx, y + dy, z + dz) is skin
+//
+// Squared distances add up over axes, so three short minima give the nearest pixel of all. Rows are
+// done in bands, so that only the bitmap itself is as large as the layer.
 #include "slicer/color/shell.h"
 
 #include <algorithm>

@@ -1,5 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Painted triangles: nearest point by an AABB tree of those near the layer, then the paint there.
+// The color of the nearest point of painted triangles: a tree of boxes (AABB) finds the nearest
+// triangle, and the paint is mixed from its corners by the weights a, b, c of that point:
+//
+//   nearest point = a A + b B + c C,  a + b + c = 1;   color, or place in the texture, likewise
 //
 // Each layer has a tree of its own, so memory is one layer's triangles and a layer's colors depend
 // on nothing but the layer. Equal distances go to the triangle with the lower number.

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What coupons are put together from. Shapes may touch or overlap: the winding number unites them.
+// Boxes, prisms and balls, from which coupons are put together. Shapes may touch or overlap: the
+// winding number (slicer/MODEL.md, Grids) unites them.
 #pragma once
 
 #include <array>

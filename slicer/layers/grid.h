@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The printer grid, the finer voxel grid and the box of a job; millimetres become voxels here.
+// The printer grid, the finer voxel grid and the box of a job (slicer/MODEL.md, Grids). Millimeters
+// become pixels and voxels here and nowhere else, so that they are rounded in one way.
 #pragma once
 
 #include <array>
@@ -27,7 +28,7 @@ struct JobBox {
   int height_vx(const Grid& grid) const { return size_px[1] * grid.detail_vx[1]; }
 };
 
-// Where a job's masks are on the bed: effects may depend on it.
+// Where a job's masks are on the bed, for effects that depend on the place.
 struct JobPlace {
   std::array<double, 2> origin_mm{};  // the lower corner of the masks
   std::array<double, 2> size_mm{};    // of the masks

@@ -1,5 +1,14 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Connected regions of a volume that passes by slice after slice: only the last slice is kept.
+// Connected regions of a volume that passes by slice after slice; only the last slice is kept.
+//
+// Each run of the new slice begins as a region of its own and is joined (union-find) with the runs
+// that it overlaps in the row before and in the same row of the slice below:
+//
+//   slice n + 1   .##...##.      two runs, joined through the slice below
+//   slice n       .########      one region
+//
+// A region that the new slice does not continue is complete: it is handed out and forgotten, so
+// memory follows the widest slice and not the height.
 #pragma once
 
 #include <array>
@@ -24,7 +33,6 @@ struct Region {
 // A region whose z counts layers, in slices.
 Region in_slices(Region region, int slices_per_layer);
 
-// Union-find over runs. A region that the new slice does not continue is finished and forgotten.
 class RegionFinder {
  public:
   explicit RegionFinder(int first_slice = 0) : slice_(first_slice) {}

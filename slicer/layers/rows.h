@@ -1,5 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Rows of flips (slicer/layers/run_layer.h) combined like sets, and what is nearest in one.
+// Rows of flips (slicer/layers/run_layer.h) as sets of voxels: union, difference, overlap.
+//
+//   a                ..####....##..     flips 2 6 10 12
+//   b                ....####......     flips 4 8
+//   intersect(a, b)  ....##........     flips 4 6
+//
+// One walk over both rows, so the cost is the number of flips and never the width.
 #pragma once
 
 #include <algorithm>

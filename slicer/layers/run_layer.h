@@ -1,8 +1,14 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // One layer or slice of bits as rows of runs: the x positions at which a row flips its state.
 //
-// Layers of real parts are mostly empty or full, so a row of 4,800 voxels is two or four numbers.
-// Every step that only cares for boundaries walks flips and never touches a bit per voxel.
+//   row   ...####..###.     flips 3 7 9 12: voxels [3, 7) and [9, 12) are 1
+//
+// "Runs" make every step cost the boundary: layers of real parts are mostly empty or full, so a row
+// of 4,800 voxels is two or four numbers, where a bit for each voxel would be 600 bytes. The price
+// is that no voxel can be set in place: a layer is built row after row and then only read.
+//
+// All rows lie in one array, because a vector for each row costs more in allocations than the rows
+// hold. Copies are deep; layers that several steps look at are passed as Shared<RunLayer>.
 #pragma once
 
 #include <cassert>
@@ -36,7 +42,8 @@ class RunLayer {
     return {flips_.data() + first, ends_[static_cast<std::size_t>(y)] - first};
   }
 
-  // Voxels outside the layer read as powder.
+  // Voxels outside the layer read as powder. WARNING: linear in the flips of the row. A loop over
+  // voxels walks row() instead.
   bool at(int x, int y) const {
     std::size_t before = 0;
     for (const int flip : row(y)) {
@@ -46,6 +53,7 @@ class RunLayer {
     return before % 2 == 1;
   }
 
+  // How many voxels are 1; linear in the flips of the layer.
   std::int64_t count() const {
     std::int64_t ones = 0;
     for (std::size_t i = 0; i < flips_.size(); i += 2) ones += flips_[i + 1] - flips_[i];
@@ -71,7 +79,8 @@ class RunLayer {
     flips_.insert(flips_.end(), flips.begin(), flips.end());
     end_row();
   }
-  // Appends the row whose voxel x is 1 where `is(x)`; asks for each x once, in order.
+  // Appends the row whose voxel x is 1 where `is(x)`; asks for each x once, in order. This costs
+  // the width, not the boundary.
   template <class Is>
   void append_row_where(const Is& is) {
     bool solid = false;
@@ -115,8 +124,8 @@ class RunLayer {
 // Packed rows, one bit per voxel, first voxel in the highest bit, rows padded with 0 to whole
 // bytes: the form of PNG, of the job's mask records and of the wire.
 std::size_t packed_row_bytes(int width);
-// `bits` is height * packed_row_bytes(width) bytes.
 std::vector<std::byte> pack(const RunLayer& layer);
+// `bits` is height * packed_row_bytes(width) bytes.
 RunLayer unpack(std::span<const std::byte> bits, int width, int height);
 
 // The part of a layer whose lower corner is at (x, y), which may lie outside: there it is powder.

@@ -32,7 +32,7 @@ void put_chunk(Bytes& out, const char* type, std::span<const std::byte> data) {
                                out.size() - begin));
 }
 
-// Each row behind a filter byte: Up, so that a row like the one above it is all zeros.
+// A filter byte stands before each row. Up subtracts the row above, so equal rows become zeros.
 Bytes filter_up(std::span<const std::byte> bits, std::size_t stride, int height) {
   constexpr std::byte kUp{2};
   Bytes rows((stride + 1) * static_cast<std::size_t>(height));

@@ -1,5 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A slice stack: a folder with stack.json and one image per layer (DESIGN section 7).
+// A slice stack: a folder with stack.json and one image per layer.
+//
+//   {"format": "slice-stack", "version": 1, "kind": "mask", "size": [nx, ny, nz],
+//    "pitch_mm": [px, py, pz], "origin_mm": [x, y, z], "files": "mask_%06d.png", "first": 0}
+//
+// Masks and color are at the printer grid. A printed stack is at the voxel pitch in x and y with
+// one image per layer, since the slices of a layer are equal; a target has every slice. Row 0 of an
+// image is the smallest y.
 #pragma once
 
 #include <array>

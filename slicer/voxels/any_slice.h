@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The slices of a layer as one.
+// The slices of a layer united into one, for work that sees the layer as its print: one height.
 #pragma once
 
 #include "slicer/layers/run_layer.h"

@@ -1,5 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The slicing operator (paper, 4.1): a mask pixel is 1 iff at least half of its voxels are 1.
+//
+// With n of the rx ry rz voxels of a pixel inside the volume: mask = 2 n >= rx ry rz. A row of
+// pixels is worked on as flips: the count n changes only where some voxel row of the pixels flips.
 #pragma once
 
 #include "slicer/layers/grid.h"

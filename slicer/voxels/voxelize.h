@@ -1,9 +1,17 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Mesh to voxels: a voxel is inside iff the surface winds around its centre (DESIGN section 5).
+// Mesh to voxels: a voxel is inside iff the surface winds around its center (slicer/MODEL.md,
+// Grids).
 //
-// Scan-line from the plane cut of each slice (paper, 4.1): triangles sorted by their lowest point,
-// an active list while the slices rise through them, crossings per row, winding number not 0.
-// Memory is the mesh, the list and the slices asked for.
+// Each slice is a plane cut through the mesh (paper, 4.1). The cut crosses the line of centers of a
+// row at some places, up (+1) or down (-1); along the row the sum of the crossings is the winding
+// number, and the row is 1 where that is not 0:
+//
+//   crossings     +1    +1      -1   -1
+//   winding     0     1      2     1     0
+//   row         ..####################...    even-odd would leave a hole where the winding is 2
+//
+// Triangles are sorted by their lowest point and are active while the slices rise through them.
+// Memory is the mesh, the active list and the slices asked for.
 #pragma once
 
 #include <memory>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Voxels one byte each, all of them at once, and DESIGN section 5 on them in plain loops: what the
+// Voxels one byte each, all of them at once, and slicer/MODEL.md on them in plain loops: what the
 // streaming engine must agree with, bit for bit.
 #pragma once
 

@@ -1,5 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Reads a .bjob file from the front, trusting nothing: what a cut file still holds.
+//
+// A record is believed once its head's checksum is right, its frame fits the file and the frame's
+// checksum is right; the next record begins where it ends. The walk stops at the first that is not
+// believed, and does not look for later ones: a job with a hole cannot be printed.
 #pragma once
 
 #include <cstdint>

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// file:PATH takes one job and is then a job file; an unfinished job leaves nothing.
+// file:PATH takes one job and is then a job file. An unfinished job leaves nothing, so nothing can
+// be resumed, and of a queue there is nothing to ask.
 #include <fmt/core.h>
 
 #include <optional>

@@ -1,15 +1,20 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The journal of a spooled job: what was acknowledged, in lines that are only ever appended.
 //
+// clang-format off
 //   start VERSION LAYERS NAME SOURCE [TO KEY] CHECKSUM
-//   ack LAYERS BYTES [DIGEST] CHECKSUM   layers 0 to LAYERS - 1 are the job file's first BYTES
-//   bytes held REASON CHECKSUM resumed CHECKSUM
+//   ack LAYERS BYTES [DIGEST] CHECKSUM    layers 0 to LAYERS - 1 are the job file up to byte BYTES
+//   held REASON CHECKSUM
+//   resumed CHECKSUM
+// clang-format on
 //
-// TO, KEY and DIGEST are there where the job went to a device: its URI, the job's number there, and
-// the digest of the acknowledged layers, both in hex.
+// TO, KEY and DIGEST are there where the job went to a device: TO is the device's URI, KEY the
+// job's number there, DIGEST that of the acknowledged layers; KEY and DIGEST are in hex.
+//
 // Words are separated by one blank; what could break a word is written as %XX. A checksum is 16 hex
-// digits of the XXH3-64 of the line before it, seeded with the checksum of the previous line, so a
-// line that is torn, changed, lost or out of place ends what is believed.
+// digits of the XXH3-64 of the words before it, seeded with the checksum of the line before. So a
+// line that is torn, changed, lost or out of place ends what is believed, and all lines before it
+// stand.
 #pragma once
 
 #include <cstdint>

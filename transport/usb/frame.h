@@ -4,6 +4,9 @@
 //   head, 32 bytes   magic 4 "BJU1" | type 1 | 0 3 | sequence 4 | payload length n 4 |
 //                    checksum 8 of the payload | checksum 8 of the 24 bytes before
 //   payload, n bytes
+//
+// The head has a checksum of its own, because a length must be believed before its payload can be
+// waited for: a damaged length would make a session wait for bytes that never come.
 #pragma once
 
 #include <cstddef>

@@ -72,12 +72,12 @@ class UsbBackend : public Backend {
   UsbUri uri_;
   BackendOptions options_;
   Spool store_;
-  std::optional<SpooledJob> job_;  // that is being sent
+  std::optional<SpooledJob> job_;  // the job being sent, as the spool's journal has it
   bool cancelled_ = false;
-  std::unique_ptr<UsbJob> there_;  // the same, at the printer
+  std::unique_ptr<UsbJob> there_;  // the job being sent, as the printer has it
 };
 
-// Somebody wants the job to stop: a mark in its folder, or a signal to this process.
+// A Fault if somebody wants the job to stop: by a mark in its folder, or a signal to this process.
 Result<void> UsbBackend::check_wanted() {
   if (job_ && cancel_asked(store_, *job_)) {
     cancelled_ = true;

@@ -1,6 +1,14 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The host's side of one job in binderjet-1: the window of layers under way, and the way back to
 // the last acknowledged layer when something goes wrong.
+//
+//   layers     0 ............ acknowledged_ ....... posted_ ....... limit_ ..... layers_
+//              safe there     sent, kept here       may be sent    not yet
+//
+// Each acknowledgement moves acknowledged_ and, with the printer's credits, limit_. Layers stay in
+// memory until they are acknowledged: at most kMaxCredits of them, and one that waits for room.
+// After a fault a new session begins, the printer says what it has, and the layers behind that are
+// sent again.
 #pragma once
 
 #include <chrono>

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Sessions: found in the noise by their number, ended by the first frame that is not as it should
-// be.
+// Sessions. A new session begins in whatever bytes an old one left in the pipes; its WELCOME is
+// found among them by the session's number. The first frame that is not as it should be ends it.
 #include "transport/usb/usb_session.h"
 
 #include <fmt/core.h>

@@ -1,5 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Lengths that a caliper read on printed blocks: how parts grow, and what else their error follows.
+//
+//   error = measured - nominal = growth (offset or scale) + layer slip + place on the bed + rest
+//
+// The terms are rungs of a ladder (nested_models.h): each has to pay on parts that its fit did not
+// see.
 #pragma once
 
 #include <array>

@@ -1,6 +1,15 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Slots and walls of a printed gauge: which show and how wide they came out, against the model; and
 // which single change of the model agrees with them.
+//
+// One number of the model at a time takes every value of a grid, and each value predicts all
+// readings. With u the uncertainty of a reading:
+//
+//   misfit(value) = sum over readings of ((measured - predicted(value)) / u)^2
+//
+// A value agrees if every reading is within its u. Level and width explain slots alike and walls
+// differently (slicer/MODEL.md, Printer model), so gauges on which two explanations differ are
+// listed. Changing two numbers at once was refused: that agrees with almost anything.
 #pragma once
 
 #include <string>
@@ -25,10 +34,12 @@ struct GaugeReading {
 };
 
 // Two forms, by columns:
-//  axis, first_visible_slot_mm_low, first_visible_slot_mm_high (paper, Fig. 3): an observer saw
-//  slots
-//   from there on, on a block with slots 0.1 mm apart;
-//  gauge (slot or wall), axis, nominal_mm, and visible (0 or 1) or measured_mm, uncertainty_mm.
+// clang-format off
+//   axis, first_visible_slot_mm_low,     the width from which on an observer saw slots, on a block
+//   first_visible_slot_mm_high           with slots 0.1 mm apart (paper, Fig. 3)
+//   gauge, axis, nominal_mm, and         gauge is slot or wall; visible is 0 or 1
+//   visible or measured_mm, uncertainty_mm
+// clang-format on
 bool has_slots(const GaugeTable& table);
 // Error{kBadInput} with file:line.
 std::vector<GaugeReading> read_slots(const GaugeTable& table);

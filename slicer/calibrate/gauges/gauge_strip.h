@@ -1,5 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // What a printer model makes of one slot or wall that is long and deep, at every place on the grid.
+//
+// Such a gauge is the same along two axes, so one line of voxels through its middle tells all. How
+// many pixels it gets depends on where its edges lie between two of them, so it is printed at 16
+// places spread over one pixel.
 #pragma once
 
 #include "slicer/layers/grid.h"

@@ -1,5 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Linear models that grow term by term, each judged on groups of readings that its fit did not see.
+//
+//   e0(g), e1(g)   the squared error of group g without and with the term, g left out of both fits
+//   t = mean(e0 - e1) / (deviation of e0 - e1 / sqrt(groups))
+//
+// Groups are left out and not readings, because readings of one part lean together (one caliper,
+// one layer that slipped) and would vouch for each other.
 #pragma once
 
 #include <Eigen/Dense>

@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // What came out of the powder, on the voxel grid of the job: a scan registered and resampled.
+//
+//   samples of the scan -> half way between the two greys -> pose -> voxel = grey at its middle
 #pragma once
 
 #include <functional>
@@ -30,7 +32,7 @@ struct Measured {
   std::optional<Registration> registration;
 };
 
-// `frame` describes the printed stack that was predicted for the job (DESIGN section 7), and
+// `frame` describes the printed stack that was predicted for the job (slice_stack.h), and
 // `predicted` are its layers. The scan may have any pitch, also in z, grey or 1-bit samples, noise,
 // and may be shifted and turned; what it does not cover reads as powder. Greys between the centres
 // of samples are interpolated and the surface is where they pass half, so edges keep their place to

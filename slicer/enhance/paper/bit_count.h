@@ -1,5 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Counting in 64 columns at once: a number per bit of a word, kept as bit planes, lowest first.
+// Counting in 64 columns at once: a number for each bit of a word, as bit planes, lowest first.
+//
+//   column          3 2 1 0
+//   plane 0 (1s)    1 0 1 0
+//   plane 1 (2s)    1 1 0 0      the numbers are 3, 2, 1, 0
+//
+// An addition is a row of full adders: a few operations on words for 64 sums.
 #pragma once
 
 #include <array>

@@ -1,8 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Tiles of bits around the boundary, one 64-bit word a row: where the rule works, and nowhere else.
 //
-// A tile is 62 columns and one on each side, 32 rows and one above and below. Only tiles that hold
-// boundary voxels are drawn, so the cost is the boundary's.
+//   word       | 1 | 62 columns that the rule may change | 1 |      and 32 rows, 1 above, 1 below
+//   neighbors    ^                                         ^         are drawn, not changed
+//
+// Only tiles that hold boundary voxels are drawn, so the cost is the boundary's. The outer columns
+// and rows let every voxel of a tile see its neighbors without a look into the next tile.
 #pragma once
 
 #include <array>

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The paper's rule (its eq. 1): boundary voxels give way where too much is printed around them and
-// fill where too little is.
+// fill where too little is (slicer/MODEL.md, The paper's rule).
 #pragma once
 
 #include "slicer/layers/run_layer.h"

@@ -1,9 +1,16 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // A box filter and a threshold on runs: the core of binder spread, at the cost of the boundary.
 //
-// Each flip of the input adds a ramp of fixed shape to the filtered row, so a row's second
-// difference is four numbers per flip and two running sums give the row. Between the ramps the sum
-// is constant and nothing is computed. All sums are integers: the result is exact for the weights.
+// Each flip of the input adds a ramp of fixed shape to the filtered row:
+//
+//   input row         .  .    .    #    #    #   #  #     one flip up
+//   box of 4 voxels      1/2  1    1    1    1/2          weights, in units
+//   sum               0  .5   1.5  2.5  3.5  4   4  4     the ramp
+//
+// The ramp's second difference is four numbers, so two running sums give the row. Between ramps the
+// sum is constant and nothing is computed. Where ramps do not meet, which is most rows, even the
+// ramp is not followed: it passes `least` once, at a place that is found directly. All sums are
+// integers: the result is exact for the weights.
 #pragma once
 
 #include <array>
@@ -13,9 +20,10 @@
 
 namespace binderjet {
 
-// A centred box of exact width w voxels along one axis (DESIGN section 5): the weight of offset i
-// is the overlap of [i - 1/2, i + 1/2] with [-w/2, w/2], as an integer. Offsets -reach and reach
-// weigh `end`, those between weigh `full`; a box within one voxel has reach 0 and weighs `end`.
+// A centered box of exact width w voxels along one axis (slicer/MODEL.md, Printer model). The
+// weight of offset i is the overlap of [i - 1/2, i + 1/2] with [-w/2, w/2], as an integer. Offsets
+// -reach and reach weigh `end`, those between weigh `full`; a box within one voxel has reach 0 and
+// weighs `end`.
 struct BoxWeights {
   int reach = 0;
   std::int64_t full = 1;

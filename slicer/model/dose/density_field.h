@@ -1,5 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The solid share of the masks in a box around a place: dense parts keep their binder wet.
+//
+// Pixels are counted in cells of 4 x 4, over all layers of the box. With S(i, j) the sum of all
+// cells below and left of corner (i, j), any box takes four reads:
+//
+//   solid in [a, b) x [c, d) = S(b, d) - S(a, d) - S(b, c) + S(a, c)
 #pragma once
 
 #include <cstdint>
@@ -11,8 +16,8 @@
 
 namespace binderjet {
 
-// Of one layer. The masks are counted in cells of kCellPx x kCellPx pixels, so that memory is
-// small beside a layer's own; between the middles of cells the share is interpolated.
+// The field of one layer. Cells keep its memory small beside the layer's own; between the middles
+// of cells the share is interpolated.
 class DensityField {
  public:
   static constexpr int kCellPx = 4;

@@ -1,9 +1,15 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Dose and threshold on runs for any sum of separable kernels on a layer and its neighbours.
 //
+//   D(v) = sum over terms t of g_t * sum over (i, j) of X_t(i) Y_t(j) * mask_(k + l_t)(v - (i, j))
+//
 // Each flip of a mask adds the running sum of its term's kernel to the dose along its row, so the
 // dose's first difference is the kernel, placed at the flip. Between the flips' reaches the dose is
 // constant and nothing is computed. All sums are integers: neither order nor threads change them.
+//
+// Cost: for each row of the result the flips within reach in y, times the width of the kernel. A
+// model that is one box has a faster way (box_filter.h). Where the dose has gains, a call is added
+// for each voxel that is neither surely bound nor surely free.
 #pragma once
 
 #include <array>
@@ -17,8 +23,8 @@
 
 namespace binderjet {
 
-// Dose of layer k from the mask of layer k + layer: gain times the mask (repeated to the voxel
-// grid) filtered with x and y, which are taken as adding up to 1.
+// What the dose of layer k gets from the mask of layer k + `layer`: `gain` times the mask (repeated
+// to the voxel grid) filtered with x and y, whose weights count as shares of their sums.
 struct DoseTerm {
   int layer = 0;
   Kernel x;

@@ -1,5 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // A one-dimensional kernel of whole weights: where along an axis the binder of one voxel ends up.
+//
+//   first = -1, weights 1 2 1:  a quarter lands one voxel below, half stays, a quarter lands above
+//
+// A kernel of two dimensions is a product of two of these. That covers boxes and gaussians, and its
+// cost is the sum of both lengths instead of their product.
 #pragma once
 
 #include <cstdint>

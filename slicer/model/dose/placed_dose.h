@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // What in a printer model depends on where on the bed a voxel is: gains of the dose, shifts of the
-// mask. A model without any of it prints the same anywhere.
+// mask, weak first drops of a line (slicer/MODEL.md, Printer model). A model without any of these
+// prints the same anywhere.
 #pragma once
 
 #include <algorithm>
@@ -24,14 +25,14 @@ struct Spot {
   double density = 0;  // the share of solid masks around it, where PlacedDose asks for it
 };
 
-// The dose is multiplied by 1 + amount(spot), never by less than 0.
+// The dose is multiplied by max(0, 1 + amount(spot)).
 struct DoseGain {
   std::function<double(const Spot&)> amount;
   double most;  // |amount| is nowhere larger
 };
 
-// Binder meant for a spot lands by_mm(spot) beside it. Along y the shift of a row is that of its
-// middle, so rows stay rows.
+// Binder meant for a spot lands by_mm(spot) beside it. Along y a mask row is shifted as a whole, by
+// the amount at its middle, so that rows stay rows.
 struct MaskShift {
   std::function<std::array<double, 2>(const Spot&)> by_mm;
   double most_mm;  // neither component is larger within 1 m

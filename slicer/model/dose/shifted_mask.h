@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Where the pixels of a mask land when the printer shifts it, in whole numbers of 1/kFine voxels:
-// between two voxels the binder is shared by both, and the sums of its dose stay integers.
+// Where the pixels of a mask land when the printer shifts it, in whole numbers of 1/kFine voxels.
+//
+// An edge that lands 5/16 of a voxel beyond voxel a counts 11/16 at a and 5/16 at a + 1, so the
+// sums of the dose stay integers, 16 times as large for each axis.
 #pragma once
 
 #include <algorithm>

@@ -1,5 +1,15 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Erosion and dilation of a stack of layers by an ellipsoid, on runs, a layer at a time.
+//
+// A row of the result is made of the rows that the ellipsoid reaches. At offset (dy, dz) the
+// ellipsoid is 2 h + 1 voxels wide, so there each run grows by h at both ends (dilation: the union
+// of these rows) or shrinks by h (erosion: their intersection):
+//
+//   dy =  1    .#.    h = 0: run [3, 7) of that row counts as [3, 7)
+//   dy =  0    ###    h = 1: as [2, 8) in a dilation, as [4, 6) in an erosion
+//   dy = -1    .#.    h = 0
+//
+// Cost: the rows of the ellipsoid times the flips of the layer.
 #pragma once
 
 #include <array>

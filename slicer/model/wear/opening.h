@@ -1,5 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Morphological opening on runs: what holds no box of a given size vanishes, the rest stays.
+//
+//   box 2 x 2      .##...#.        .##.....
+//                  .#####..   ->   .##.....     one voxel high: gone
+//                  .##.....        .##.....
+//
+// First the lower corners of all boxes that fit (erosion), then the boxes at these corners united.
 #pragma once
 
 #include <array>

@@ -1,5 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Where a print falls apart that the target holds together.
+// Where a print falls apart that the target holds together, as a window of a few layers shows it.
+//
+//   target   .##########.      one region
+//   print    .####..####.      two pieces: count 1, the smaller is loose, the gap is ".."
 #pragma once
 
 #include <span>

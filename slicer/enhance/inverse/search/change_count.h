@@ -1,5 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Whether a plane has one value all over a rectangle, at once for any rectangle.
+// Whether all cells of a rectangle of a plane have the same value, at one cost for any rectangle.
+//
+// Cells of a rectangle are alike iff no cell differs from the one beside it. So the plane keeps two
+// tables of sums: how many cells up to (x, y) differ from the cell below, and from the cell to the
+// left. The count within a rectangle is then four reads of each table.
 #pragma once
 
 #include "slicer/enhance/rules/rect_cells.h"
@@ -39,10 +43,8 @@ class ChangeCount {
            up_to(rect.x1 - 1, rect.y0 - 1) + up_to(rect.x0 - 1, rect.y0 - 1);
   }
 
-  // The sums, from the lower corner to each cell, of the cells that differ from the one below and
-  // from the one to the left.
-  Plane<int> across_;
-  Plane<int> along_;
+  Plane<int> across_;  // up to each cell, how many differ from the cell below
+  Plane<int> along_;   // up to each cell, how many differ from the cell to the left
 };
 
 }  // namespace binderjet

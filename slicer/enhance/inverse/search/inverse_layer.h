@@ -19,16 +19,16 @@ namespace binderjet {
 // What is wrong with a layer's print beyond single voxels.
 struct LayerFaults {
   LayerFeatures gone;  // lost and fused, under the nominal model
-  RunLayer barren;     // printed where no part is, under any model of the window
-  Breaks breaks;       // seen from the layers beside it, under the nominal model
+  RunLayer barren;     // must stay powder: printed where no part is, under any model of the window
+  Breaks breaks;       // as the layers beside it show them, under the nominal model
 };
 
-// Shared, for most steps change one of its parts only.
+// A step changes one or two members, so the members are shared and a copy is cheap.
 struct InverseLayer {
   Shared<VoxelLayer> target;
   Shared<RunLayer> plain;  // its mask without enhancement
   Shared<RunLayer> mask;   // its mask so far; obeys the rules
-  // Faults that its print has had before and shall not have again.
+  // Faults that its print has had in an earlier round; a search must not bring them back.
   std::vector<Shared<LayerFaults>> stressed;
   int number = 0;  // in the job, from 0 on the bed
 };
@@ -39,11 +39,12 @@ using LayerWindow = std::span<const Shared<InverseLayer>>;
 // Null also beyond the window's ends.
 const InverseLayer* layer_at(LayerWindow layers, int offset);
 
-// The layers whose print the mask of the middle one changes, and those whose masks have a part in
-// that print, as offsets.
+// The layers that the middle layer's mask has to do with, as offsets from the middle layer. Where
+// binder sinks one layer the print of k takes the masks of k and k + 1, so printed = {-1, 0} and
+// masks = {-1, 0, 1}.
 struct ModelOffsets {
-  std::set<int> printed;
-  std::set<int> masks;
+  std::set<int> printed;  // the layers whose print the mask of the middle layer changes
+  std::set<int> masks;    // the layers whose masks have a part in one of those prints
 };
 ModelOffsets offsets_of(const AssembledModel& form);
 
@@ -51,15 +52,15 @@ ModelOffsets offsets_of(const AssembledModel& form);
 std::vector<const RunLayer*> masks_around(LayerWindow layers, int offset,
                                           const PrinterModel& model);
 
-// What becomes of the layer at `offset`, which must be there: with the plain masks, and with those
-// so far but `own` for the middle layer.
+// The print of the layer at `offset`, which must be there, from plain masks.
 RunLayer print_plain(LayerWindow layers, int offset, const PrinterModel& model);
+// The same from the masks so far, with `own` as the mask of the middle layer.
 RunLayer print_with(LayerWindow layers, int offset, const PrinterModel& model, const RunLayer& own);
 
-// Voxels of all its slices that come out wrong.
+// The wrong voxels of all slices of the layer.
 std::int64_t wrong_voxels(const InverseLayer& layer, const RunLayer& printed);
-// Whether with this mask for the middle layer none of the layers that it prints into has more wrong
-// voxels than with plain masks, or than it has now.
+// Whether `own` may be the mask of the middle layer: no layer that it prints into may have more
+// wrong voxels than with plain masks, unless the layer has at least as many now.
 bool no_worse_than_plain(LayerWindow layers, const PrinterModel& model, const ModelOffsets& offsets,
                          const RunLayer& own);
 

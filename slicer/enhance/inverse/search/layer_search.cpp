@@ -106,8 +106,8 @@ void LayerSearch::search(std::span<Tile> tiles, const SearchStart* anew) {
   for (const Tile& tile : tiles) search(tile);
 }
 
-// Finds the pixels to search on. Where all that a pixel can do is good, or all is bad, it is
-// settled.
+// Finds the pixels to search on. A pixel is settled where all voxels that it reaches want binder,
+// or none of them does.
 void LayerSearch::look_over(Tile& tile, const SearchStart* anew) {
   TileSurroundings around(layers_, by_.offsets, places_, mask_);
   const LocalDose dose(by_.models, by_.grid, tile.rect, around);
@@ -127,10 +127,14 @@ void LayerSearch::look_over(Tile& tile, const SearchStart* anew) {
   if (anew != nullptr) begin(tile, wanted, *anew, dose);
 }
 
-// A pixel is on if a straight edge through what it reaches wants it on. A feature narrower than the
-// spread has no such pixel, and flips of single pixels would never bring it about: there those are
-// on that come as near to it, compared with the best around them. Half the spread's reach is where
-// that begins to change a straight edge, so half of that is looked at.
+// With w(p) the share of the binder of pixel p that lands where binder is wanted:
+//
+//   p is on iff w(p) >= (1 - level share) * max of w over the pixels near p
+//
+// At a straight edge the maximum is 1, and this is where a straight edge has its mask. In a feature
+// that is narrower than the spread no pixel reaches 1, and flips of single pixels would never bring
+// the feature about; there its best pixels are on. "Near" is a quarter of pixel_reach(): from half
+// on, the maximum would change straight edges.
 void LayerSearch::begin(const Tile& tile, const Plane<double>& wanted, const SearchStart& start,
                         const LocalDose& dose) {
   if (start.mask != nullptr) {
@@ -156,7 +160,7 @@ void LayerSearch::begin(const Tile& tile, const Plane<double>& wanted, const Sea
   }
 }
 
-// A straight edge needs the pixels that have more than this share of their binder within.
+// The share of its binder that a pixel at a straight edge has where binder is wanted.
 double LayerSearch::wanted_at(int x, int y) const {
   if (!places_.has_gains()) return 1 - by_.level_share;
   const auto [rx, ry, rz] = by_.grid.detail_vx;

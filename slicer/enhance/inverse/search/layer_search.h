@@ -18,31 +18,34 @@
 
 namespace binderjet {
 
-// What a search goes by; the first model is the nominal one.
+// All that a search needs to know beside the layers.
 struct SearchModel {
-  PrinterModel printer;
-  std::vector<StampedModel> models;
-  ModelOffsets offsets;
-  double level_share = 0.5;  // the level, of the dose that a wide field gets
+  PrinterModel printer;              // the nominal model, exact: it judges
+  std::vector<StampedModel> models;  // the process window, the nominal model first
+  ModelOffsets offsets;              // the layers that a mask prints into
+  double level_share = 0.5;          // level / dose inside a wide solid
   MaskRules rules;
   Grid grid;
 };
 
-// Where a search begins.
+// The mask that a search begins with.
 struct SearchStart {
-  const RunLayer* mask = nullptr;  // if not null, with this mask
-  double share = 1;                // else as a straight edge wants it, of which this much is enough
+  // This mask, if it is not null.
+  const RunLayer* mask = nullptr;
+  // Else the pixels of which at least `share` times as much binder lands where binder is wanted as
+  // a straight edge needs (LayerSearch::begin()); less than 1 begins with more pixels on.
+  double share = 1;
 };
 
 class LayerSearch {
  public:
-  // On the middle one of the layers; both must outlive this. It begins with the mask so far.
+  // Searches the mask of the middle layer, and begins with its mask so far. Both arguments must
+  // outlive this.
   LayerSearch(const SearchModel& by, LayerWindow layers);
 
-  // Searches the whole layer; `anew` forgets its mask so far.
+  // Searches the whole layer. With `anew` the mask so far is forgotten.
   void run(bool anew);
-  // Searches from this start where pixels reach what is 1 in any of these layers, on the voxel
-  // grid.
+  // Searches, from this start, the tiles whose pixels reach a voxel that is 1 in any of `places`.
   void run_near(std::span<const RunLayer* const> places, const SearchStart& start);
 
   RunLayer mask() const { return to_layer(mask_, box_.x1, box_.y1); }
@@ -50,7 +53,7 @@ class LayerSearch {
  private:
   struct Tile {
     Rect rect;
-    std::vector<Pixel> pixels;  // those for which neither state is right whatever is around
+    std::vector<Pixel> pixels;  // whose right state depends on the pixels around them
   };
 
   void find_tiles();

@@ -27,7 +27,7 @@ constexpr int kWeighShift = 14;
 
 int floor_div(int a, int b) { return a >= 0 ? a / b : -((b - 1 - a) / b); }
 
-// The cost of the voxels that reach `least` with the stamp, less that of those that do without.
+// The cost of the voxels that are bound with the stamp, less the cost of those bound without it.
 BINDERJET_VECTOR_CLONES
 int lifted_cost(StampOverlay o, int least) {
   int sum = 0;
@@ -105,8 +105,8 @@ void add_half_line(const int* line, int width, int first, int last, int sign, in
   for (int x = rising; x < count; ++x) to[x] += whole;
 }
 
-// What a voxel with a gain has as if its dose were larger: never enough alone, and never more than
-// any dose makes up for.
+// The credit of dose that stands for a voxel's gain (stamp.h). Alone a credit never reaches the
+// level; a gain of 0 is a debt that no dose makes up for.
 int credit(int least, float gain) {
   constexpr double kNever = 1 << 30;
   const double needed = gain > 0 ? static_cast<double>(least) / gain : kNever;
@@ -313,7 +313,6 @@ void LocalDose::add_shifted_mask(const Stamp& stamp, const Plane<std::uint8_t>& 
   });
 }
 
-// A dose of d with a gain of g reaches a level l where d and l - l / g do without.
 void LocalDose::add_credit(Field& field) const {
   const Plane<float>* gain = around_.gain(-field.stamp->layer);
   if (gain == nullptr) return;

@@ -1,9 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The dose of the voxels around a tile, kept up to date while single pixels of a mask are flipped.
 //
-// With the stamps (slicer/enhance/inverse/search/stamp.h) this is all the inverse solver knows of
-// the printer model. What a flip would do to the print is known before it is done, at the cost of
-// its stamp.
+// A voxel costs its slices of powder less its slices of target where it is printed, and 0 where it
+// is not. A flip adds its stamp (slicer/enhance/inverse/search/stamp.h) to the dose, so
+//
+//   cost of a flip = sum over the stamp's voxels of cost * (bound after - bound before)
+//
+// is known before the flip is made, at the cost of reading the stamp.
 #pragma once
 
 #include <array>
@@ -40,9 +43,9 @@ struct StampOverlay;  // a stamp laid on the dose; for the loops over its voxels
 
 // What a pixel can do for the print, whatever the mask around it.
 struct PixelSight {
-  int least_cost = 0;  // among the voxels that it has binder for
-  int most_cost = 0;
-  double wanted = 0;  // the share of its binder that lands where binder is wanted
+  int least_cost = 0;  // the least cost of a voxel that the pixel has binder for
+  int most_cost = 0;   // the largest
+  double wanted = 0;   // the share of the pixel's binder that lands where binder is wanted
 };
 
 class LocalDose {
@@ -62,7 +65,8 @@ class LocalDose {
   Rect voxels_of(int x, int y) const;
   PixelSight sight(int x, int y) const;
 
-  // Computes the doses from the masks as they are. Before it sight() is all there is.
+  // Computes the doses from the masks as they are. TRAP: until then only sight() and what asks for
+  // rectangles may be called. A tile with nothing to decide never pays for this.
   void reset();
   // What the weighted count of wrong voxels grows by when pixel (x, y) is set (sign 1) or cleared
   // (sign -1).

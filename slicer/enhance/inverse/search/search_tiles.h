@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Where in a layer there is anything to decide: the tiles within reach of the target's boundary.
+// Where in a layer there is anything to decide: the tiles within reach of the target's boundary. A
+// pixel whose reach is all target or all powder is right as the plain mask has it.
 #pragma once
 
 #include <array>

@@ -29,8 +29,8 @@ class ShiftedStamps {
 
   // Stamps count from the voxel that the pixel's lower corner lands in.
   const Stamp& pixel(const PixelFit& fit);
-  // Of an endless row of pixels that begins there; beyond its width it goes on as in its last
-  // column.
+  // Of a row of pixels that begins there and never ends. The stamp holds the columns in which it
+  // rises; beyond them all columns are like the last.
   const Stamp& half_line(int part_x, int part_y);
 
  private:

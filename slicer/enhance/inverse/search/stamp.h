@@ -1,5 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The printer model as the inverse solver sees it: what one mask pixel adds to the dose.
+//
+//   dose of a layer = sum over the pixels that are on of the pixel's stamp, laid where it lands
+//
+// A stamp is the kernels of all terms from one layer, summed over the voxels of a pixel, in whole
+// units. So a flip costs the area of a stamp, and after any number of flips the dose is the same as
+// if it were computed anew.
 #pragma once
 
 #include <array>
@@ -27,8 +33,11 @@ struct DoseLevel {
   int weight = 1;
 };
 
-// Models that differ in their levels only share their stamps and so their doses; where the dose has
-// gains they do not, for a gain is taken as a credit of dose that depends on the level.
+// Models of the process window whose terms are equal: one dose, compared with the level of each.
+//
+// Models with gains share nothing. A voxel with dose d and gain g is bound iff g d >= level, that
+// is iff d + credit >= level with credit = level - level / g. So each level has credits of its own,
+// which are added to the dose once.
 struct StampedModel {
   std::vector<DoseTerm> terms;
   std::vector<Stamp> stamps;  // one per layer that matters, of a pixel that is not shifted
@@ -43,7 +52,8 @@ constexpr int whole_vectors(int columns) {
 }
 
 // weights[i] is how much a wrong voxel counts under models[i]. The unit is 2^-29 or, where binder
-// adds up to more than 1, coarser; a dose within rounding of a level counts as bound.
+// adds up to more than 1, coarser. Stamps are rounded to units, so a dose that misses a level by no
+// more than that rounding counts as bound; the exact model (PrinterModel) has the last word.
 std::vector<StampedModel> stamped(std::span<const PrinterModel> models,
                                   std::span<const int> weights, const Grid& grid);
 

@@ -12,9 +12,9 @@
 
 namespace binderjet {
 
-// A voxel of a stressed feature counts this much, in its slice and under the nominal model, and one
-// that shall stay barren under all models: more than all that a pixel reaches, so that no other
-// gain makes up for it.
+// What one voxel counts in a search that must set a fault right: more than all voxels that a pixel
+// reaches, so that no other gain makes up for it. A voxel of a stressed feature counts this much in
+// its slice and under the nominal model; a voxel that must stay powder counts it under all models.
 constexpr int kStress = 1000;
 
 class TileSurroundings : public Surroundings {

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // What the place on the bed does to the layers of a window: shifts of their masks, gains of their
-// dose, as the inverse solver meets them.
+// dose. Density is that of the masks when this is made: a search does not follow how its own flips
+// change it, so models with density improve each layer twice.
 #pragma once
 
 #include <array>
@@ -16,7 +17,7 @@ namespace binderjet {
 
 class WindowPlaces {
  public:
-  // The density is that of the masks as they are now. Model and grid must outlive this.
+  // Model and grid must outlive this.
   WindowPlaces(const PrinterModel& model, const Grid& grid, LayerWindow layers,
                const ModelOffsets& offsets);
 
