@@ -1,6 +1,7 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: GPL-3.0-or-later
-# Installs what tests/packages.txt lists and is missing, then builds into build/ (or $1).
+# Installs what tests/packages.txt lists and is missing, then builds into build/ (or $1) everything, or
+# the targets that follow.
 set -euo pipefail
 cd "$(dirname "$0")/.."
 build=${1:-build}
@@ -18,4 +19,5 @@ if [ ${#missing[@]} -gt 0 ]; then
 fi
 
 cmake -S . -B "$build" -G Ninja
-cmake --build "$build" -j 2
+targets=("${@:2}")
+cmake --build "$build" -j 2 -t "${targets[@]:-all}"
