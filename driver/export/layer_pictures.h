@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "slicer/calibrate/job/measured_job.h"
+#include "slicer/model/effects/effect.h"
 
 namespace binderjet {
 

@@ -63,8 +63,10 @@ std::set<std::string> files_with(const std::map<std::string, std::string>& files
 const std::map<std::string, std::set<std::string>> kOtherMeanings = {
     // the cut of a scan's gray values (slices.json)
     {"threshold", {"slicer/stack/read_stack.cpp"}},
-    // an axis of the residual's figures
-    {"density", {"slicer/calibrate/residual/residual_by_axis.cpp", kEffects + "covariate.cpp"}},
+    // what a dependence may be on
+    {"density",
+     {"slicer/calibrate/residual/residual_by_axis.cpp", kEffects + "covariate.cpp",
+      kEffects + "empirical.cpp", kEffects + "empirical_scan.cpp"}},
 };
 
 TEST(AddingAnEffect, CostsItsFileAndOneLineOfTheCatalogue) {
