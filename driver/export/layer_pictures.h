@@ -5,7 +5,8 @@
 #include <cstddef>
 #include <vector>
 
-#include "slicer/calibrate/job/calibration.h"
+#include "slicer/calibrate/job/measured_job.h"
+#include "slicer/model/effects/effect.h"
 
 namespace binderjet {
 

@@ -11,6 +11,7 @@
 
 #include "driver/base/files.h"
 #include "slicer/base/error.h"
+#include "slicer/model/effects/catalogue.h"
 #include "transport/usb/usb_quirks.h"
 
 namespace binderjet {

@@ -21,8 +21,8 @@ void put(Json& json, const Numbers& numbers) {
 }
 
 Json to_json(const Covariate& covariate) {
-  Json json = {{"axis", covariate.axis}};
-  if (!covariate.form.empty()) json["form"] = covariate.form;
+  Json json = {{"axis", word(covariate.axis)}};
+  if (covariate.form != Covariate::Form::kConstant) json["form"] = word(covariate.form);
   put(json, covariate.numbers);
   return json;
 }
@@ -49,7 +49,7 @@ Json to_json(const PrintError& error, double unavoidable) {
 
 Json calibration_json(const Calibration& calibration, const std::string& profile,
                       const std::string& report) {
-  Json json = {{"format", "calibration"}, {"version", 1}, {"verdict", calibration.verdict}};
+  Json json = {{"format", "calibration"}, {"version", 1}, {"verdict", word(calibration.verdict)}};
   json["effects"] = Json::array();
   for (const FoundEffect& effect : calibration.effects) json["effects"].push_back(to_json(effect));
   if (calibration.remaining) {

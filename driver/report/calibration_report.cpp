@@ -32,9 +32,9 @@ std::string readable(std::string kind) {
 }
 
 std::string name_of(const FoundEffect& effect) {
-  std::string name = effect.kind == "empirical"
-                         ? "one without a name, which follows " + text_of(effect.covariate)
-                         : readable(effect.kind);
+  std::string name = effect.named
+                         ? readable(effect.kind)
+                         : "one without a name, which follows " + text_of(effect.covariate);
   if (effect.rivals.empty()) return name;
   for (const std::string& rival : effect.rivals) name += " or " + readable(rival);
   return name + " (this print cannot tell)";
@@ -49,9 +49,9 @@ std::string text_of(const EffectSpec& effect) {
 
 std::string verdict(const Calibration& calibration) {
   std::string text;
-  if (calibration.verdict == "none") {
+  if (calibration.verdict == Verdict::kNone) {
     text = "The print is what the declared model says, as far as this measurement can tell.";
-  } else if (calibration.verdict == "unexplained") {
+  } else if (calibration.verdict == Verdict::kUnexplained) {
     text = "The print differs from the declared model, and nothing that was tried explains it.";
   } else {
     std::vector<std::string> names;
@@ -163,9 +163,9 @@ std::string measured_section(const MeasuredJob& job) {
 }  // namespace
 
 std::string text_of(const Covariate& covariate) {
-  if (covariate.axis.empty()) return "everywhere alike";
-  std::string text = readable(covariate.axis);
-  if (!covariate.form.empty()) text += ", " + covariate.form;
+  if (covariate.axis == Covariate::Axis::kNone) return "everywhere alike";
+  std::string text = readable(word(covariate.axis));
+  if (covariate.form != Covariate::Form::kConstant) text += ", " + word(covariate.form);
   const std::string numbers = numbers_text(covariate.numbers);
   return numbers.empty() ? text : text + " (" + numbers + ")";
 }

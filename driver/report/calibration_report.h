@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "slicer/calibrate/job/calibration.h"
+#include "slicer/calibrate/job/measured_job.h"
 
 namespace binderjet {
 

@@ -4,11 +4,13 @@
 
 #include <algorithm>
 #include <cctype>
+#include <optional>
 #include <utility>
 
 #include "driver/base/html.h"
 #include "driver/report/calibration_report.h"
 #include "driver/report/gauge_report.h"
+#include "slicer/model/effects/catalogue.h"
 
 namespace binderjet {
 namespace {
@@ -32,24 +34,31 @@ bool has_columns(const Rung& rung, const Ladder& ladder) {
                      [&](const auto& column) { return column.term == rung.name; });
 }
 
+// Names the kind of effect that would cause the term, and its rivals.
+void name_cause(LengthTerm term, FoundEffect& effect) {
+  for (const EffectKind& kind : effect_kinds()) {
+    for (const LengthCause& cause : kind.length_causes) {
+      if (cause.term != term) continue;
+      if (cause.named) effect.kind = kind.name;
+      if (!cause.named) effect.rivals.push_back(kind.name);
+    }
+  }
+  // Faces that lie further out by the same everywhere: powder binds at a lower dose, or the driver
+  // takes too thin a shell off, which is no effect of the printer; lengths alone cannot tell.
+  if (term == LengthTerm::kOffset) effect.rivals.emplace_back("bleed_shell");
+}
+
 // A term of the ladder as the effect that it is in the catalogue.
 FoundEffect effect_of(const Rung& rung, const Ladder& ladder) {
   FoundEffect effect;
-  effect.kind = "empirical";
-  if (rung.name.rfind("growth", 0) == 0) {
-    // Faces that lie further out by the same everywhere: powder binds at a lower dose, or the
-    // driver takes too thin a shell off; lengths alone cannot tell.
-    effect.kind = rung.form == "scale" ? "scale_xyz" : "threshold";
-    effect.rivals = rung.form == "scale" ? std::vector<std::string>{"threshold"}
-                                         : std::vector<std::string>{"bleed_shell"};
-  } else if (rung.name.rfind("layer shift", 0) == 0) {
-    effect.kind = "layer_shift_low";
-    effect.covariate = {"layer", "trend", {}};
-    effect.rivals = {"first_layers"};
-  } else if (rung.name == "place on the bed") {
-    effect.kind = "grad_bed";
-    effect.covariate = {"position", "trend", {}};
-    effect.rivals = {"density"};
+  effect.kind = nameless_word();
+  const std::optional<LengthTerm> term = length_term(rung);
+  effect.named = term.has_value();
+  if (term) name_cause(*term, effect);
+  if (term == LengthTerm::kLayerShift) {
+    effect.covariate = {Covariate::Axis::kLayer, Covariate::Form::kTrend};
+  } else if (term == LengthTerm::kBedPlace) {
+    effect.covariate = {Covariate::Axis::kPosition, Covariate::Form::kTrend};
   }
   effect.p = rung.p;
   effect.heldout_gain = rung.gain;
@@ -137,14 +146,15 @@ std::vector<std::vector<std::string>> growth_rows(const LengthFindings& found) {
 
 Json to_json(const LengthFindings& found) {
   const Ladder& ladder = found.ladder;
-  Json json = {{"format", "calibration"},
-               {"version", 1},
-               {"verdict", last_accepted(ladder) != nullptr ? "effect" : "none"}};
+  Json json = {
+      {"format", "calibration"},
+      {"version", 1},
+      {"verdict", word(last_accepted(ladder) != nullptr ? Verdict::kEffect : Verdict::kNone)}};
   Json effects = Json::array();
   for (const FoundEffect& effect : effects_of(ladder)) {
     Json covariate = Json::object();
-    if (!effect.covariate.axis.empty()) {
-      covariate = {{"axis", effect.covariate.axis}, {"form", effect.covariate.form}};
+    if (effect.covariate.axis != Covariate::Axis::kNone) {
+      covariate = {{"axis", word(effect.covariate.axis)}, {"form", word(effect.covariate.form)}};
     }
     effects.push_back({{"kind", effect.kind},
                        {"parameters", effect.parameters},

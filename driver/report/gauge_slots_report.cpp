@@ -59,9 +59,9 @@ Json to_json(const SlotFindings& found) {
   const bool explained = !found.explanations.empty() && found.explanations.front().agrees;
   Json json = {{"format", "calibration"},
                {"version", 1},
-               {"verdict", found.declared_agrees ? "none"
-                           : explained           ? "effect"
-                                                 : "unexplained"},
+               {"verdict", word(found.declared_agrees ? Verdict::kNone
+                                : explained           ? Verdict::kEffect
+                                                      : Verdict::kUnexplained)},
                {"effects", Json::array()}};
   Json readings = Json::array();
   for (std::size_t i = 0; i < found.readings.size(); ++i) {

@@ -83,16 +83,16 @@ MeasuredJob read_job(const std::string& name, const std::string& path,
 
 std::string summary(const Calibration& calibration) {
   std::string text;
-  if (calibration.verdict == "none") text = "nothing is missing that this print shows\n";
-  if (calibration.verdict == "unexplained" && calibration.effects.empty()) {
+  if (calibration.verdict == Verdict::kNone) text = "nothing is missing that this print shows\n";
+  if (calibration.verdict == Verdict::kUnexplained && calibration.effects.empty()) {
     text = "the print is not as predicted, and nothing that was tried explains it\n";
   }
   for (const FoundEffect& effect : calibration.effects) {
-    text += fmt::format(
-        "{}: depends on {}{}{}, p {:.3f}\n",
-        effect.kind == "empirical" ? "nothing in the catalogue explains this" : effect.kind,
-        effect.covariate.axis, effect.covariate.form.empty() ? "" : ", ", effect.covariate.form,
-        effect.p);
+    text += fmt::format("{}: depends on {}{}{}, p {:.3f}\n",
+                        effect.named ? effect.kind : "nothing in the catalogue explains this",
+                        word(effect.covariate.axis),
+                        effect.covariate.form == Covariate::Form::kConstant ? "" : ", ",
+                        word(effect.covariate.form), effect.p);
     for (const std::string& rival : effect.rivals) {
       text += fmt::format("  or {}: this part cannot tell\n", rival);
     }

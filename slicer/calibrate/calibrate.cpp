@@ -14,12 +14,11 @@ bool far_above_floor(const BeforeAfter& score, bool scanned) {
   return score.floor && score.after.wrong > most * score.floor->wrong;
 }
 
-std::string verdict_of(const std::vector<FoundEffect>& effects, bool far_above) {
-  if (effects.empty()) return far_above ? "unexplained" : "none";
-  const bool nameless = std::all_of(effects.begin(), effects.end(), [](const FoundEffect& effect) {
-    return effect.kind == "empirical";
-  });
-  return nameless ? "unexplained" : "effect";
+Verdict verdict_of(const std::vector<FoundEffect>& effects, bool far_above) {
+  if (effects.empty()) return far_above ? Verdict::kUnexplained : Verdict::kNone;
+  const bool named = std::any_of(effects.begin(), effects.end(),
+                                 [](const FoundEffect& effect) { return effect.named; });
+  return named ? Verdict::kEffect : Verdict::kUnexplained;
 }
 
 Calibration calibrate(const MeasuredJob& job, const std::vector<MeasuredJob>& checks,

@@ -5,6 +5,7 @@
 #include <functional>
 
 #include "slicer/calibrate/job/calibration.h"
+#include "slicer/calibrate/job/measured_job.h"
 
 namespace binderjet {
 
@@ -28,9 +29,9 @@ struct CalibrationLimits {
   }
 };
 
-// "effect" if one has a name, "unexplained" if those found have none; with none found "unexplained"
-// if the prints say that there is something (far_above_floor()), else "none".
-std::string verdict_of(const std::vector<FoundEffect>& effects, bool far_above);
+// kEffect if one has a name, kUnexplained if those found have none; with none found kUnexplained
+// if the prints say that there is something (far_above_floor()), else kNone.
+Verdict verdict_of(const std::vector<FoundEffect>& effects, bool far_above);
 
 // Whether what is left can be no chance. Where only noise parts model and print, two prints differ
 // by at least as much as either does from the model, since both have noise: half as much again is

@@ -6,8 +6,9 @@
 #include <algorithm>
 #include <cmath>
 
-#include "slicer/calibrate/choice/jitter.h"
 #include "slicer/calibrate/choice/null_draws.h"
+#include "slicer/calibrate/choice/random_layers.h"
+#include "slicer/model/effects/catalogue.h"
 
 namespace binderjet {
 namespace {
@@ -49,38 +50,30 @@ Calibrator::Calibrator(const MeasuredJob& job, const EffectList& declared,
       errors_(first_errors_) {}
 
 void Calibrator::run() {
-  while (static_cast<int>(taken_.size()) < limits_.most_effects && add_one()) {
+  while (static_cast<int>(accepted_.size()) < limits_.most_effects && add_one()) {
   }
   drop_superseded();
-  if (!taken_.empty()) refit_all();
-  look_for_jitter();
+  if (!accepted_.empty()) refit_all();
+  look_for_random_layers();
 }
 
 std::vector<FoundEffect> Calibrator::effects() const {
   std::vector<FoundEffect> out;
-  for (const Taken& taken : taken_) {
-    out.push_back(taken.found);
+  for (const AcceptedEffect& accepted : accepted_) {
+    out.push_back(accepted.found);
     FoundEffect& found = out.back();
-    const EffectSpec& spec = model_[taken.effect];
+    const EffectSpec& spec = model_[accepted.effect];
     found.parameters = spec.numbers;
-    // The covariate's own figures are the refitted ones.
-    const auto copy = [&](const char* from, const char* to) {
-      if (found.covariate.numbers.contains(to) && spec.numbers.contains(from)) {
-        found.covariate.numbers[to] = spec.numbers.at(from);
-      }
-    };
-    copy("period_mm", "period_mm");
-    copy("period", found.covariate.axis == "layer" ? "period_layers" : "period_mm");
-    copy("direction_deg", "direction_deg");
-    copy("center_mm", "centre_mm");
+    const EffectKind& kind = *find_effect_kind(spec.kind);
+    if (kind.update_covariate != nullptr) kind.update_covariate(spec, found.covariate);
   }
   return out;
 }
 
-std::vector<FreeNumber> Calibrator::numbers_of_taken() const {
+std::vector<FreeNumber> Calibrator::numbers_of_accepted() const {
   std::vector<FreeNumber> out;
-  for (const Taken& taken : taken_) {
-    const auto numbers = free_numbers(model_, taken.effect);
+  for (const AcceptedEffect& accepted : accepted_) {
+    const auto numbers = free_numbers(model_, accepted.effect);
     out.insert(out.end(), numbers.begin(), numbers.end());
   }
   return out;
@@ -88,71 +81,70 @@ std::vector<FreeNumber> Calibrator::numbers_of_taken() const {
 
 std::vector<std::vector<float>> Calibrator::known_columns(
     const std::vector<SurfacePoint>& points) const {
-  auto known = slopes(job_, model_, points, numbers_of_taken());
+  auto known = slopes(job_, model_, points, numbers_of_accepted());
   for (auto& column : scanner_columns(job_, model_, points)) known.push_back(std::move(column));
   return known;
 }
 
 bool Calibrator::add_one() {
-  step_(fmt::format("looking for effect {}", taken_.size() + 1));
-  std::vector<Fitted> fitted = regressed();
-  for (Fitted& one : tried()) fitted.push_back(std::move(one));
-  return !fitted.empty() && take_best(std::move(fitted));
+  step_(fmt::format("looking for effect {}", accepted_.size() + 1));
+  std::vector<FittedCandidate> fitted = fit_ranked_candidates();
+  for (FittedCandidate& one : fit_ranked_trials()) fitted.push_back(std::move(one));
+  return !fitted.empty() && accept_best(std::move(fitted));
 }
 
 // What the residual in dose points to. The regression is linear and blind to what was fused or
 // lost; the real forward model decides among those that it cannot part by far.
-std::vector<Calibrator::Fitted> Calibrator::regressed() {
+std::vector<Calibrator::FittedCandidate> Calibrator::fit_ranked_candidates() {
   constexpr std::size_t kMostTried = 4;
   constexpr int kTrialRounds = 3;
-  std::vector<Candidate> candidates = named_candidates(job_, model_);
-  std::vector<Candidate> scan = scan_candidates(job_, model_);
-  candidates.insert(candidates.end(), scan.begin(), scan.end());
+  const std::vector<Candidate> candidates = all_candidates(job_.extent(), model_);
   const auto points = surface_points(job_, model_, seen_, kChoicePoints, kPairReachMm);
-  const std::vector<Choice> choices =
-      choose(job_, model_, points, known_columns(points), candidates);
-  if (choices.empty()) return {};
-  const Choice& best = choices.front();
-  const Candidate& winner = candidates[best.winner];
+  const std::vector<ScoredCandidate> ranked =
+      rank_candidates(job_, model_, points, known_columns(points), candidates);
+  if (ranked.empty()) return {};
+  const ScoredCandidate& best = ranked.front();
+  const Candidate& winner = candidates[best.place];
   remaining_ = Remaining{winner.covariate, std::max(0.0, best.share)};
   step_(fmt::format("best is {} of {} ({}): {:.3f} of the residual, p {:.3f}", winner.kind,
-                    winner.covariate.axis, winner.covariate.form, best.share, best.p));
+                    word(winner.covariate.axis), word(winner.covariate.form), best.share, best.p));
   if (!limits_.sure(best.p, best.share) || best.share < limits_.least_share || !best.folds_agree)
     return {};
   untried_equals_.clear();
-  std::vector<Fitted> out;
-  for (std::size_t i = 0; i < choices.size(); ++i) {
+  std::vector<FittedCandidate> out;
+  for (std::size_t i = 0; i < ranked.size(); ++i) {
+    const ScoredCandidate& scored = ranked[i];
+    const Candidate& candidate = candidates[scored.place];
     if (i >= kMostTried) {
-      if (choices[i].equal) untried_equals_.push_back(candidates[choices[i].winner].kind);
+      if (scored.equal && candidate.named) untried_equals_.push_back(candidate.kind);
       continue;
     }
-    Fitted one{
-        candidates[choices[i].winner], {}, choices[i].p, choices[i].share, choices[i].equal, {}};
-    one.model = refit_with_taken(one.candidate.apply(choices[i].coefficients), one.candidate.effect,
-                                 kTrialRounds);
+    FittedCandidate one{candidate, {}, scored.p, scored.share, scored.equal, {}};
+    one.model =
+        refit_with_accepted(candidate.apply(scored.coefficients), candidate.effect, kTrialRounds);
     out.push_back(std::move(one));
   }
   return out;
 }
 
 // What only the printed voxels show.
-std::vector<Calibrator::Fitted> Calibrator::tried() {
+std::vector<Calibrator::FittedCandidate> Calibrator::fit_ranked_trials() {
   constexpr std::size_t kMostTried = 2;
-  std::vector<Fitted> out;
-  for (Trial& trial : try_effects(job_, model_, seen_)) {
+  std::vector<FittedCandidate> out;
+  for (ScoredTrial& trial : rank_trials(job_, model_, seen_)) {
     if (out.size() == kMostTried || trial.share < limits_.least_gain) break;
     step_(fmt::format("tried {}: {:.3f} of the wrong voxels, p {:.3f}{}", trial.candidate.kind,
                       trial.share, trial.p, trial.folds_agree ? "" : ", in some places only"));
     if (!limits_.sure(trial.p, trial.share) || !trial.folds_agree) continue;
-    Fitted one{std::move(trial.candidate), {}, trial.p, trial.share, false, {}};
+    FittedCandidate one{std::move(trial.candidate), {}, trial.p, trial.share, false, {}};
     one.model = with_places_fitted(job_, std::move(trial.model), one.candidate.effect, seen_);
     out.push_back(std::move(one));
   }
   return out;
 }
 
-bool Calibrator::take_best(std::vector<Fitted> fitted) {
-  for (Fitted& one : fitted) {
+bool Calibrator::accept_best(std::vector<FittedCandidate> fitted) {
+  for (FittedCandidate& one : fitted) {
     one.counts = counts_of(one.model);
     step_(fmt::format("fitted {}: {:.3f} of the residual, {} voxels wrong", one.candidate.kind,
                       one.share, sum_of(one.counts)));
@@ -166,7 +158,7 @@ bool Calibrator::take_best(std::vector<Fitted> fitted) {
   }
   const Candidate& candidate = fitted[best].candidate;
   EffectList model = with_places_fitted(job_, fitted[best].model, candidate.effect, seen_);
-  model = refit_with_taken(model, candidate.effect, kLastRounds);
+  model = refit_with_accepted(model, candidate.effect, kLastRounds);
   const Errors errors = errors_of(model);
   step_(fmt::format("{}: printed error {:.5f} to {:.5f} on layers not seen", candidate.kind,
                     errors_.held, errors.held));
@@ -181,15 +173,16 @@ bool Calibrator::take_best(std::vector<Fitted> fitted) {
   const bool harmless = errors.held <= errors_.held;
   if (!enough(&Errors::held) && !(in_layers && harmless && enough(&Errors::all))) return false;
 
-  Taken taken;
-  taken.found.kind = candidate.kind;
-  taken.found.covariate = candidate.covariate;
-  taken.found.p = fitted[best].p;
-  taken.found.heldout_gain = fitted[best].share;
-  taken.found.rivals = rivals_of(fitted, best);
-  taken.effect = candidate.effect;
-  taken.along = candidate.along;
-  taken_.push_back(std::move(taken));
+  AcceptedEffect accepted;
+  accepted.found.kind = candidate.kind;
+  accepted.found.named = candidate.named;
+  accepted.found.covariate = candidate.covariate;
+  accepted.found.p = fitted[best].p;
+  accepted.found.heldout_gain = fitted[best].share;
+  accepted.found.rivals = rivals_of(fitted, best);
+  accepted.effect = candidate.effect;
+  accepted.along = candidate.along;
+  accepted_.push_back(std::move(accepted));
   model_ = std::move(model);
   errors_ = errors;
   remaining_.reset();
@@ -198,7 +191,7 @@ bool Calibrator::take_best(std::vector<Fitted> fitted) {
 
 // Names that neither the printed voxels nor, if these are nearly as many, the residual can tell
 // from the best. An effect without a name is no rival: it says no more than the residual does.
-std::vector<std::string> Calibrator::rivals_of(const std::vector<Fitted>& fitted,
+std::vector<std::string> Calibrator::rivals_of(const std::vector<FittedCandidate>& fitted,
                                                std::size_t best) const {
   constexpr double kNearly = 1.015;
   const WrongCounts before = counts_of(model_);
@@ -207,10 +200,11 @@ std::vector<std::string> Calibrator::rivals_of(const std::vector<Fitted>& fitted
   std::vector<std::string> out;
   const auto add = [&](const std::string& kind) {
     const bool known = std::find(out.begin(), out.end(), kind) != out.end();
-    if (!known && kind != fitted[best].candidate.kind && kind != "empirical") out.push_back(kind);
+    if (!known && kind != fitted[best].candidate.kind) out.push_back(kind);
   };
-  for (const Fitted& other : fitted) {
+  for (const FittedCandidate& other : fitted) {
     const bool nearly = static_cast<double>(sum_of(other.counts)) <= kNearly * fewest;
+    if (!other.candidate.named) continue;
     if (alike(gain, gains(before, other.counts)) || (other.equal && nearly)) {
       add(other.candidate.kind);
     }
@@ -228,9 +222,9 @@ WrongCounts Calibrator::counts_of(const EffectList& model) const {
   return wrong_counts(job_, print_layers(job_, model, seen_));
 }
 
-EffectList Calibrator::refit_with_taken(const EffectList& model, std::size_t effect,
-                                        int rounds) const {
-  std::vector<FreeNumber> numbers = numbers_of_taken();
+EffectList Calibrator::refit_with_accepted(const EffectList& model, std::size_t effect,
+                                           int rounds) const {
+  std::vector<FreeNumber> numbers = numbers_of_accepted();
   const auto own = free_numbers(model, effect);
   numbers.insert(numbers.end(), own.begin(), own.end());
   return refit(job_, model, numbers, seen_, rounds);
@@ -239,8 +233,8 @@ EffectList Calibrator::refit_with_taken(const EffectList& model, std::size_t eff
 // What was found first may stand for a part of what was found later; it goes if the others do as
 // well without it.
 void Calibrator::drop_superseded() {
-  for (std::size_t i = 0; taken_.size() > 1 && i < taken_.size();) {
-    const std::size_t place = taken_[i].effect;
+  for (std::size_t i = 0; accepted_.size() > 1 && i < accepted_.size();) {
+    const std::size_t place = accepted_[i].effect;
     EffectList without = model_;
     if (place < declared_effects_) {
       ++i;  // a declared effect with another number
@@ -248,27 +242,27 @@ void Calibrator::drop_superseded() {
     }
     without.erase(without.begin() + static_cast<std::ptrdiff_t>(place));
     std::vector<FreeNumber> numbers;
-    for (std::size_t k = 0; k < taken_.size(); ++k) {
-      const std::size_t effect = taken_[k].effect - (taken_[k].effect > place ? 1 : 0);
+    for (std::size_t k = 0; k < accepted_.size(); ++k) {
+      const std::size_t effect = accepted_[k].effect - (accepted_[k].effect > place ? 1 : 0);
       if (k == i) continue;
       const auto own = free_numbers(without, effect);
       numbers.insert(numbers.end(), own.begin(), own.end());
     }
-    step_(fmt::format("trying without {}", taken_[i].found.kind));
+    step_(fmt::format("trying without {}", accepted_[i].found.kind));
     without = refit(job_, std::move(without), numbers, seen_, kLastRounds);
     const Errors errors = errors_of(without);
     const auto missed = [&](double Errors::*of) {
       return errors.*of - errors_.*of > limits_.least_gain / 2 * errors.*of;
     };
-    const bool in_layers = (taken_[i].along & kAlongZ) != 0;
+    const bool in_layers = (accepted_[i].along & kAlongZ) != 0;
     if (missed(&Errors::held) || (in_layers && missed(&Errors::all))) {
       ++i;
       continue;
     }
     model_ = std::move(without);
     errors_ = errors;
-    taken_.erase(taken_.begin() + static_cast<std::ptrdiff_t>(i));
-    for (Taken& taken : taken_) taken.effect -= taken.effect > place ? 1 : 0;
+    accepted_.erase(accepted_.begin() + static_cast<std::ptrdiff_t>(i));
+    for (AcceptedEffect& accepted : accepted_) accepted.effect -= accepted.effect > place ? 1 : 0;
     i = 0;
   }
 }
@@ -291,20 +285,24 @@ void Calibrator::refit_all() {
 }
 
 // Last, since every shift that follows a rule would look like it.
-void Calibrator::look_for_jitter() {
-  step_("looking for jitter");
+void Calibrator::look_for_random_layers() {
+  const auto kind =
+      std::find_if(effect_kinds().begin(), effect_kinds().end(),
+                   [](const EffectKind& one) { return one.random_layers != nullptr; });
+  if (kind == effect_kinds().end()) return;
+  step_("looking for " + kind->name);
   const auto points = surface_points(job_, model_, LayerChoice(job_.masks.size(), true),
                                      kChoicePoints, kPairReachMm);
-  const auto found = find_jitter(job_, model_, points, known_columns(points));
+  const auto found = find_random_layers(job_, model_, points, known_columns(points));
   if (!found || found->p > limits_.most_p || found->share < limits_.least_gain) return;
-  model_.push_back({"jitter", {}, {{"sigma_mm", {found->sigma_mm[0], found->sigma_mm[1]}}}});
-  Taken taken;
-  taken.found.kind = "jitter";
-  taken.found.covariate = {"layer", "local", {}};
-  taken.found.p = found->p;
-  taken.found.heldout_gain = found->share;
-  taken.effect = model_.size() - 1;
-  taken_.push_back(std::move(taken));
+  model_.push_back(kind->random_layers(found->sigma_mm));
+  AcceptedEffect accepted;
+  accepted.found.kind = kind->name;
+  accepted.found.covariate = {Covariate::Axis::kLayer, Covariate::Form::kLocal};
+  accepted.found.p = found->p;
+  accepted.found.heldout_gain = found->share;
+  accepted.effect = model_.size() - 1;
+  accepted_.push_back(std::move(accepted));
 }
 
 }  // namespace binderjet

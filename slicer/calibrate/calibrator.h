@@ -29,8 +29,8 @@ class Calibrator {
   std::vector<FoundEffect> effects() const;
 
  private:
-  // An effect that was found, and where its numbers are in the model.
-  struct Taken {
+  // An effect that is in the model now, and where its numbers are there.
+  struct AcceptedEffect {
     FoundEffect found;
     std::size_t effect = 0;
     unsigned along = kNowhere;
@@ -41,7 +41,7 @@ class Calibrator {
     double all;
   };
   // A candidate in the real forward model.
-  struct Fitted {
+  struct FittedCandidate {
     Candidate candidate;
     EffectList model;
     double p = 1;
@@ -50,19 +50,20 @@ class Calibrator {
     WrongCounts counts;  // of the layers seen
   };
 
-  std::vector<FreeNumber> numbers_of_taken() const;
+  std::vector<FreeNumber> numbers_of_accepted() const;
   std::vector<std::vector<float>> known_columns(const std::vector<SurfacePoint>& points) const;
   bool add_one();
-  std::vector<Fitted> regressed();
-  std::vector<Fitted> tried();
-  bool take_best(std::vector<Fitted> fitted);
-  std::vector<std::string> rivals_of(const std::vector<Fitted>& fitted, std::size_t best) const;
-  EffectList refit_with_taken(const EffectList& model, std::size_t effect, int rounds) const;
+  std::vector<FittedCandidate> fit_ranked_candidates();
+  std::vector<FittedCandidate> fit_ranked_trials();
+  bool accept_best(std::vector<FittedCandidate> fitted);
+  std::vector<std::string> rivals_of(const std::vector<FittedCandidate>& fitted,
+                                     std::size_t best) const;
+  EffectList refit_with_accepted(const EffectList& model, std::size_t effect, int rounds) const;
   WrongCounts counts_of(const EffectList& model) const;
   Errors errors_of(const EffectList& model) const;
   void drop_superseded();
   void refit_all();
-  void look_for_jitter();
+  void look_for_random_layers();
 
   const MeasuredJob& job_;
   CalibrationLimits limits_;
@@ -73,9 +74,9 @@ class Calibrator {
   std::size_t declared_effects_;
   Errors first_errors_;
   Errors errors_;
-  std::vector<Taken> taken_;
+  std::vector<AcceptedEffect> accepted_;
   std::optional<Remaining> remaining_;
-  // Kinds that the last regression cannot tell from its best, and that were not fitted.
+  // Named kinds that the last regression cannot tell from its best, and that were not fitted.
   std::vector<std::string> untried_equals_;
 };
 

@@ -4,6 +4,7 @@
 
 #include <string>
 
+#include "slicer/calibrate/job/calibration.h"
 #include "slicer/calibrate/residual/surface.h"
 
 namespace binderjet {

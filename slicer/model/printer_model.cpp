@@ -6,24 +6,12 @@
 #include <utility>
 
 #include "slicer/base/error.h"
-#include "slicer/model/wear/opening.h"
 
 namespace binderjet {
-namespace {
-
-AssembledModel form_of(const std::vector<EffectSpec>& effects, const Grid& grid,
-                       const JobPlace& place) {
-  AssembledModel form;
-  form.place = place;
-  for (const EffectSpec& effect : effects) find_effect_kind(effect.kind)->add(effect, grid, form);
-  return form;
-}
-
-}  // namespace
 
 PrinterModel::PrinterModel(const std::vector<EffectSpec>& effects, const Grid& grid,
                            const JobPlace& place)
-    : PrinterModel(form_of(effects, grid, place), grid, place) {}
+    : PrinterModel(assemble(effects, grid, place), grid, place) {}
 
 PrinterModel::PrinterModel(AssembledModel form, const Grid& grid, const JobPlace& place)
     : repeat_{grid.detail_vx[0], grid.detail_vx[1]},
@@ -53,11 +41,9 @@ void PrinterModel::choose_filter(const Grid& grid, const JobPlace& place) {
 RunLayer PrinterModel::bind(std::span<const RunLayer* const> window, int layer) const {
   const AssembledModel::Received masks = form_.received(window, layer);
   const auto* box = std::get_if<OneBox>(&filter_);
-  RunLayer printed = box != nullptr ? box_threshold(*masks.masks[masks.masks.size() / 2], repeat_,
-                                                    box->x, box->y, box->least)
-                                    : std::get<DoseFilter>(filter_)(masks.masks, layer);
-  for (const std::array<int, 2>& least : form_.survive_vx) printed = opening(printed, least);
-  return printed;
+  return box != nullptr ? box_threshold(*masks.masks[masks.masks.size() / 2], repeat_, box->x,
+                                        box->y, box->least)
+                        : std::get<DoseFilter>(filter_)(masks.masks, layer);
 }
 
 int PrinterModel::wear_reach() const {
@@ -86,9 +72,12 @@ RunLayer PrinterModel::worn(std::span<const RunLayer* const> bound) const {
 }
 
 RunLayer PrinterModel::print(std::span<const RunLayer* const> window, int layer) const {
+  if (form_.wear.empty()) return bind(window, layer);
   const int around = wear_reach();
   const auto count = 2 * static_cast<std::size_t>(bind_reach()) + 1;
-  if (form_.wear.empty()) return bind(window, layer);
+  // The window may be larger than this model asks for.
+  window = window.subspan(window.size() / 2 - static_cast<std::size_t>(window_reach()),
+                          2 * static_cast<std::size_t>(window_reach()) + 1);
   std::vector<RunLayer> bound(2 * static_cast<std::size_t>(around) + 1);
   std::vector<const RunLayer*> layers(bound.size(), nullptr);
   for (std::size_t i = 0; i < bound.size(); ++i) {

@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <utility>
 
+#include "slicer/model/effects/catalogue.h"
+
 namespace binderjet {
 namespace {
 

@@ -37,7 +37,7 @@ Calibration calibrated(const Printer& printer, std::array<double, 3> size_mm = {
 TEST(Calibrate, ClaimsNothingOfAPrinterThatIsAsDeclared) {
   Printer nothing;
   const Calibration found = calibrated(nothing);
-  EXPECT_EQ(found.verdict, "none");
+  EXPECT_EQ(found.verdict, Verdict::kNone);
   EXPECT_TRUE(found.effects.empty());
   EXPECT_EQ(found.scores[0].before.wrong, found.scores[0].after.wrong);
 }
@@ -54,10 +54,11 @@ TEST(Calibrate, NamesBleedingDownAndPredictsAPartThatItNeverSaw) {
 TEST(Calibrate, SaysOnWhatAnEffectWithoutANameDepends) {
   const Calibration found = calibrated(printer_named(hidden::nameless(), "layer wave of shift"));
   ASSERT_FALSE(found.effects.empty());
-  EXPECT_EQ(found.verdict, "unexplained");
+  EXPECT_EQ(found.verdict, Verdict::kUnexplained);
   EXPECT_EQ(found.effects[0].kind, "empirical");
-  EXPECT_EQ(found.effects[0].covariate.axis, "layer");
-  EXPECT_EQ(found.effects[0].covariate.form, "periodic");
+  EXPECT_FALSE(found.effects[0].named);
+  EXPECT_EQ(found.effects[0].covariate.axis, Covariate::Axis::kLayer);
+  EXPECT_EQ(found.effects[0].covariate.form, Covariate::Form::kPeriodic);
   EXPECT_NEAR(found.effects[0].covariate.numbers.at("period_layers")[0], 7.3, 0.3);
   EXPECT_LT(found.scores[0].after.wrong, 0.6 * found.scores[0].before.wrong);
 }
@@ -128,17 +129,17 @@ TEST(Calibrate, NamesTheRivalsThatStraightWallsCannotTellApart) {
   EXPECT_GT(level_against_wicking(stairs), difference(stairs.prints[0], stairs.prints[1]));
 }
 
-FoundEffect found_effect(const std::string& kind) {
+FoundEffect found_effect(bool named) {
   FoundEffect effect;
-  effect.kind = kind;
+  effect.named = named;
   return effect;
 }
 
 TEST(Calibrate, SaysUnexplainedWhereNothingHasANameOrPrintsAgreeAgainstTheModel) {
-  EXPECT_EQ(verdict_of({}, false), "none");
-  EXPECT_EQ(verdict_of({}, true), "unexplained");
-  EXPECT_EQ(verdict_of({found_effect("empirical")}, false), "unexplained");
-  EXPECT_EQ(verdict_of({found_effect("empirical"), found_effect("parity")}, true), "effect");
+  EXPECT_EQ(verdict_of({}, false), Verdict::kNone);
+  EXPECT_EQ(verdict_of({}, true), Verdict::kUnexplained);
+  EXPECT_EQ(verdict_of({found_effect(false)}, false), Verdict::kUnexplained);
+  EXPECT_EQ(verdict_of({found_effect(false), found_effect(true)}, true), Verdict::kEffect);
 
   BeforeAfter score;
   score.after.wrong = 0.02;
@@ -190,7 +191,7 @@ TEST(Calibrate, LeavesUnexplainedWhatTwoPrintsShareAndNoCovariateTells) {
   for (auto& print : a.prints) strew_pits(print, 1);
   const Calibration found = calibrate(a, {}, hidden::declared(), {}, [](const std::string&) {});
   EXPECT_TRUE(found.effects.empty()) << found.effects.front().kind;
-  EXPECT_EQ(found.verdict, "unexplained");
+  EXPECT_EQ(found.verdict, Verdict::kUnexplained);
 }
 
 // A pyramid whose steps are `step_of` a layer; from layer 7 on each layer is printed as the next.

@@ -8,6 +8,8 @@
 #include <memory>
 #include <random>
 
+#include "tests/hidden_printers/hidden_wear.h"
+
 namespace binderjet::hidden {
 namespace {
 
@@ -87,8 +89,13 @@ Image binder(const Printer& printer, const RunLayer& mask, int layer) {
     const auto row = mask.row(y);
     for (std::size_t i = 0; i < row.size(); i += 2) {
       for (int x = 2 * row[i]; x < 2 * row[i + 1]; ++x) {
-        fine.at(x, 2 * y) = static_cast<float>(drops);
-        fine.at(x, 2 * y + 1) = static_cast<float>(drops);
+        double drop = drops;
+        if (printer.drop_of_line && i == 0) {
+          // Two voxels are one drop.
+          drop *= printer.drop_of_line((x / 2 - row[i] + 0.5) * kPixelX);
+        }
+        fine.at(x, 2 * y) = static_cast<float>(drop);
+        fine.at(x, 2 * y + 1) = static_cast<float>(drop);
       }
     }
   }
@@ -250,7 +257,13 @@ void print(const Printer& printer, MeasuredJob& job, unsigned seed) {
   std::vector<Image> masks(count, Image(0, 0));
   std::vector<Image> spread(count, Image(0, 0));
   oneapi::tbb::parallel_for(std::size_t{0}, count, [&](std::size_t k) {
-    masks[k] = binder(printer, *job.masks[k], static_cast<int>(k));
+    const int layer = static_cast<int>(k);
+    const int from = printer.layer_of ? printer.layer_of(layer) : layer;
+    const RunLayer powder = RunLayer::powder(job.masks[k]->width(), job.masks[k]->height());
+    masks[k] = binder(
+        printer,
+        from < 0 || from >= job.layers() ? powder : *job.masks[static_cast<std::size_t>(from)],
+        layer);
     spread[k] = convolved(masks[k], wx, wy);
     if (printer.tail_share > 0) {
       const Image wide = convolved(masks[k], gauss_weights(printer.tail_mm / vx),
@@ -332,7 +345,7 @@ void print(const Printer& printer, MeasuredJob& job, unsigned seed) {
   oneapi::tbb::parallel_for(std::size_t{0}, count, [&](std::size_t k) {
     layers[k] = std::make_shared<const RunLayer>(cut(dose[k], cut_at));
   });
-  job.prints.push_back(std::move(layers));
+  job.prints.push_back(worn(printer, std::move(layers), {vx, vy, kLayer}));
 }
 
 }  // namespace binderjet::hidden

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // A printer with an effect that nobody declared: dense physics in floating point, written without
-// anything of slicer/effects, so that a calibration cannot find its own code in the data.
+// anything of slicer/model/effects, so that a calibration cannot find its own code in the data.
 #pragma once
 
 #include <array>
@@ -9,7 +9,9 @@
 #include <string>
 #include <vector>
 
-#include "slicer/calibrate/job/calibration.h"
+#include "slicer/calibrate/job/measured_job.h"
+#include "slicer/model/effects/covariate.h"
+#include "slicer/model/effects/effect.h"
 
 namespace binderjet::hidden {
 
@@ -23,9 +25,10 @@ struct At {
 
 struct Printer {
   std::string name;
-  // Any of these kinds, or any of these axes, names the effect rightly; both empty: there is none.
+  std::string effect;  // the kind of the catalogue whose physics it has; empty: none
+  // Any of these words, or any of these axes, names the effect rightly; both empty: there is none.
   std::vector<std::string> kinds;
-  std::vector<std::string> axes;
+  std::vector<Covariate::Axis> axes;
 
   std::array<double, 2> width_mm{0.7, 0.3};
   bool gaussian = false;  // the same second moment, another shape
@@ -36,9 +39,15 @@ struct Printer {
   double tail_mm = 1;  // standard deviation
   double density = 0;  // level - density (share in a ball - 0.5)
   double ball_mm = 2;
-  double wear_mm = 0;                      // the print blurred in 3-D and cut at a half
+  double wear_mm = 0;      // the print blurred in 3-D and cut at a half
+  double thinnest_mm = 0;  // what is thinner along x or y, within its layer, breaks off
+  double soak_mm = 0;      // glue fills gaps narrower than twice that ...
+  double skin_mm = 0;      // ... and every face grows by this
   std::function<double(const At&)> gain;   // of the dose
   std::function<double(const At&)> drops;  // of the binder before it spreads
+  // Of a drop at so many mm from where its line along x begins.
+  std::function<double(double mm)> drop_of_line;
+  std::function<int(int)> layer_of;  // layer k gets the mask of layer layer_of(k); powder beyond
   std::function<std::array<double, 2>(const At&)> shift_mm;
   double noise = 0.02;     // of the dose, standard deviation
   double noise_mm = 0.05;  // its correlation

@@ -30,7 +30,7 @@ void run(const Printer& printer, const Wanted& coupon, const Wanted& wanted, Tal
   std::string effects;
   for (const FoundEffect& effect : loop.found.effects) {
     effects += " " + effect.kind;
-    if (effect.kind == "empirical") effects += "(" + effect.covariate.axis + ")";
+    if (!effect.named) effects += "(" + word(effect.covariate.axis) + ")";
   }
   const auto row = [](const PrintScore& score) {
     return fmt::format("{:.4f} {:3}/{:<3}/{:<2}", score.voxels.excess(), score.lost, score.fused,

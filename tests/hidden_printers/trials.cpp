@@ -24,8 +24,8 @@ struct Tally {
 bool is_right(const Printer& printer, const std::vector<FoundEffect>& effects) {
   if (printer.kinds.empty() && printer.axes.empty()) return effects.empty();
   return std::any_of(effects.begin(), effects.end(), [&](const FoundEffect& effect) {
-    const auto has = [](const std::vector<std::string>& list, const std::string& word) {
-      return std::find(list.begin(), list.end(), word) != list.end();
+    const auto has = [](const auto& list, const auto& one) {
+      return std::find(list.begin(), list.end(), one) != list.end();
     };
     return has(printer.kinds, effect.kind) || has(printer.axes, effect.covariate.axis);
   });
@@ -62,8 +62,8 @@ void run(const Printer& printer, bool small, unsigned seed, Tally& tally) {
       std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   std::string list;
   for (const FoundEffect& effect : found.effects) {
-    list += fmt::format(" {}({} {}; p {:.3f}", effect.kind, effect.covariate.axis,
-                        effect.covariate.form, effect.p);
+    list += fmt::format(" {}({} {}; p {:.3f}", effect.kind, word(effect.covariate.axis),
+                        word(effect.covariate.form), effect.p);
     for (const auto& [name, values] : effect.parameters) {
       list += fmt::format(" {}={:.4g}", name, fmt::join(values, ","));
     }
@@ -80,21 +80,21 @@ void run(const Printer& printer, bool small, unsigned seed, Tally& tally) {
   tally.right += right ? 1 : 0;
   tally.gone += gone >= 0.8 ? 1 : 0;
   fmt::print("{:5} {:20} {:11} {:.4f} -> {:.4f} (best {:.4f}) gone {:5.2f}  {:5.1f} s {}\n",
-             right ? "right" : "WRONG", printer.name, found.verdict, before.wrong, after.wrong,
-             floor, gone, seconds, list);
+             right ? "right" : "WRONG", printer.name, word(found.verdict), before.wrong,
+             after.wrong, floor, gone, seconds, list);
   std::fflush(stdout);
 }
 
 }  // namespace
 
 int main(int argc, char** argv) {
-  const auto word = [&](int i, const char* otherwise) {
+  const auto argument = [&](int i, const char* otherwise) {
     return std::string(argc > i ? argv[i] : otherwise);
   };
-  const bool small = word(1, "small") == "small";
-  const std::string set = word(2, "catalogue");
-  const std::string name = word(3, "");
-  const int seeds = std::stoi(word(4, "1"));
+  const bool small = argument(1, "small") == "small";
+  const std::string set = argument(2, "catalogue");
+  const std::string name = argument(3, "");
+  const int seeds = std::stoi(argument(4, "1"));
   std::vector<Printer> printers;
   if (set == "catalogue") printers = catalogue(1);
   if (set == "half") printers = catalogue(0.5);

@@ -95,7 +95,12 @@ inline Volume print(const Volume& mask, const AssembledModel& form, const Grid& 
     }
     return dose > 0 && dose >= static_cast<long double>(form.level) * (1 - 1e-12L);
   });
-  for (const auto& box : form.survive_vx) out = opened(out, box[0], box[1]);
+  // Of wear only that of thin parts is known here; all of it is in whole_print.h. It reaches as far as
+  // its box is wide, less one.
+  for (const Wear& step : form.wear) {
+    if (!step.keeps_edges) continue;
+    out = opened(out, step.reach.xy_vx[0] + 1, step.reach.xy_vx[1] + 1);
+  }
   return out;
 }
 

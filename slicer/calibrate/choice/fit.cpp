@@ -6,34 +6,16 @@
 #include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
-#include <map>
 
 #include "slicer/calibrate/residual/printed_error.h"
+#include "slicer/model/effects/catalogue.h"
 
 namespace binderjet {
 namespace {
 
-// Steps by parameter: absolute, or relative where negative. Parameters that are not here stay: they
-// name a place or a choice.
-double step_of(const EffectSpec& effect, const std::string& name, double value) {
-  static const std::map<std::string, double> steps = {
-      {"level", 0.005}, {"width_mm", -0.02},  {"share", 0.01},      {"strength", 0.02},
-      {"by_mm", 0.002}, {"by", 0.0003},       {"height_mm", -0.05}, {"amount", 0.005},
-      {"wave", 0.003},  {"per_mm2", 0.0002},  {"period", -0.002},   {"period_mm", -0.002},
-      {"width", -0.05}, {"length_mm", -0.05}, {"center_mm", 0.05},  {"direction_deg", 0.5}};
-  // Which layers a pulse is in is found by the scan: between two of them there is nothing to fit.
-  const auto form = effect.words.find("form");
-  if (form != effect.words.end() && form->second == "pulse" && name != "amount") return 0;
-  if (name == "radius_mm") return effect.kind == "density" ? 0.05 * value : 0;  // wear has no dose
-  if (name == "per_mm") return effect.kind == "registration_drift" ? 0.0005 : 0.001;
-  if (name == "center_mm" && effect.kind == "grad_bed") return 0;
-  if (name == "width_mm" && effect.kind == "survive") return 0;
-  if (name == "share" && effect.kind == "recoat_compress") return 0;
-  if (name == "period" && value == 2) return 0;
-  if (name == "direction_deg" && std::fmod(value, 90) == 0) return 0;
-  const auto found = steps.find(name);
-  if (found == steps.end()) return 0;
-  return found->second < 0 ? -found->second * value : found->second;
+double step_of(const EffectSpec& effect, const NumberRule& rule, double value) {
+  if (rule.fits != nullptr && !rule.fits(effect, value)) return 0;
+  return rule.fit_step + rule.fit_share * value;
 }
 
 double& number_of(EffectList& model, const FreeNumber& free) {
@@ -68,9 +50,11 @@ Eigen::VectorXd gauss_newton(const std::vector<std::vector<float>>& columns,
 
 std::vector<FreeNumber> free_numbers(const EffectList& model, std::size_t effect) {
   std::vector<FreeNumber> out;
-  for (const auto& [name, values] : model[effect].numbers) {
+  const EffectSpec& spec = model[effect];
+  for (const auto& [name, values] : spec.numbers) {
+    const NumberRule& rule = find_effect_kind(spec.kind)->rule(name);
     for (std::size_t i = 0; i < values.size(); ++i) {
-      const double step = step_of(model[effect], name, values[i]);
+      const double step = step_of(spec, rule, values[i]);
       if (step > 0) out.push_back({effect, name, i, step});
     }
   }

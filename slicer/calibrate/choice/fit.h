@@ -6,8 +6,8 @@
 #include <string>
 #include <vector>
 
-#include "slicer/calibrate/candidates/candidate.h"
 #include "slicer/calibrate/residual/surface.h"
+#include "slicer/model/effects/candidates.h"
 
 namespace binderjet {
 

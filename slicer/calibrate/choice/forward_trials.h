@@ -6,26 +6,26 @@
 
 #include <vector>
 
-#include "slicer/calibrate/candidates/candidate.h"
 #include "slicer/calibrate/residual/surface.h"
+#include "slicer/model/effects/candidates.h"
 
 namespace binderjet {
 
-// The best of one kind.
-struct Trial {
+// The best trial of one kind.
+struct ScoredTrial {
   Candidate candidate;  // without columns; its model is `model`
   EffectList model;
   double share = 0;          // of the wrong voxels that it takes away
-  double p = 1;              // family-wise, over all that was tried
+  double p = 1;              // over all that was tried
   bool folds_agree = false;  // along every axis it does not depend on (most_agree())
 };
 
 // Those that make the print of the chosen layers better, the best first.
-std::vector<Trial> try_effects(const MeasuredJob& job, const EffectList& model,
-                               const LayerChoice& layers);
+std::vector<ScoredTrial> rank_trials(const MeasuredJob& job, const EffectList& model,
+                                     const LayerChoice& layers);
 
-// The model with the numbers that name a place or a size of this effect (at_mm, from_mm, radius_mm,
-// ...) moved to where the chosen layers are printed best.
+// The model with the numbers of this effect that are searched (NumberRule::search_step) moved to
+// where the chosen layers are printed best.
 EffectList with_places_fitted(const MeasuredJob& job, EffectList model, std::size_t effect,
                               const LayerChoice& layers);
 

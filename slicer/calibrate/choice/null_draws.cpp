@@ -24,7 +24,7 @@ double sum_of_cells(std::span<const double> gain) {
   return std::accumulate(gain.begin(), gain.end(), 0.0);
 }
 
-double family_p(std::span<const std::vector<double>* const> family, double best) {
+double p_over_all_gains(std::span<const std::vector<double>* const> family, double best) {
   int beaten = 0;
   for (const std::vector<int>& signs : sign_draws(kCells)) {
     beaten += std::any_of(family.begin(), family.end(), [&](const std::vector<double>* gain) {

@@ -17,13 +17,13 @@ double sum_of_cells(std::span<const double> gain);
 
 // How often the best of the family does at least as well as `best` when each cell's gain may as
 // well have been a loss.
-double family_p(std::span<const std::vector<double>* const> family, double best);
+double p_over_all_gains(std::span<const std::vector<double>* const> family, double best);
 
 // All in all a gain, and at most one slab loses. A slab that gains or loses less than a fiftieth of
 // the whole has no vote: where an effect has nothing to act on (no edge, no gap) chance alone sets
 // the sign, and three such slabs would reject every second effect that is there.
 bool most_agree(std::span<const double> slabs);
-// The same along every axis that is not in `along` (candidate.h).
+// The same along every axis that is not in `along` (candidates.h).
 bool slabs_agree(std::span<const double> gain, unsigned along);
 
 // Whether two gains are apart by no more than one standard error of their difference, cell by cell,

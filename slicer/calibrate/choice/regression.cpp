@@ -7,6 +7,7 @@
 #include <cmath>
 
 #include "slicer/calibrate/choice/null_draws.h"
+#include "slicer/model/effects/level.h"
 
 namespace binderjet::regression {
 
@@ -14,10 +15,7 @@ Field field_of(const MeasuredJob& job, const EffectList& model,
                const std::vector<SurfacePoint>& points) {
   Field field;
   field.margin = margins_at(job, model, points);
-  double level = 0;
-  for (const EffectSpec& effect : model) {
-    if (effect.numbers.contains("level")) level = effect.number("level");
-  }
+  const double level = level_of(model);
   for (std::size_t axis = 0; axis < 2; ++axis) {
     std::array<double, 2> step{};
     step[axis] = 0.5;
@@ -66,7 +64,7 @@ std::vector<float> values(const Column& column, const MeasuredJob& job, const Fi
   return out;
 }
 
-Known::Known(const std::vector<std::vector<float>>& columns, const Field& field)
+FittedAlready::FittedAlready(const std::vector<std::vector<float>>& columns, const Field& field)
     : columns_(columns), count_(static_cast<Eigen::Index>(columns.size())) {
   gram_.assign(kCells, Matrix::Zero(count_, count_));
   right_.assign(kCells, Vector::Zero(count_));
@@ -89,12 +87,14 @@ Known::Known(const std::vector<std::vector<float>>& columns, const Field& field)
   }
 }
 
-Vector Known::at(std::size_t i) const {
+Vector FittedAlready::at(std::size_t i) const {
   Vector row(count_);
   for (Eigen::Index c = 0; c < count_; ++c) row[c] = columns_[static_cast<std::size_t>(c)][i];
   return row;
 }
-Normal Known::normal(const std::vector<std::vector<float>>& columns, const Field& field) const {
+
+Normal FittedAlready::normal(const std::vector<std::vector<float>>& columns,
+                             const Field& field) const {
   const auto q = static_cast<Eigen::Index>(columns.size());
   Normal out;
   out.gram.assign(kCells, Matrix::Zero(q, q));
@@ -175,8 +175,8 @@ HeldOut held_out(const Normal& normal, const Matrix& gram, const Vector& right, 
 
 }  // namespace
 
-Tried attempt(const Candidate& candidate, const Normal& normal, double power) {
-  Tried out;
+Score score_of(const Candidate& candidate, const Normal& normal, double power) {
+  Score out;
   const Eigen::Index q = normal.right.front().size();
   Matrix gram = Matrix::Zero(q, q);
   Vector right = Vector::Zero(q);
@@ -214,7 +214,7 @@ Tried attempt(const Candidate& candidate, const Normal& normal, double power) {
 }
 
 // How often a residual with the signs of its cells drawn at random looks as good to any candidate.
-double family_p(const std::vector<Tried>& tried, double best_gain) {
+double p_over_all_columns(const std::vector<Score>& scores, double best_gain) {
   std::vector<Vector> signs;
   for (const std::vector<int>& draw : sign_draws(kCells)) {
     signs.push_back(Eigen::Map<const Eigen::VectorXi>(draw.data(), kCells).cast<double>());
@@ -222,7 +222,7 @@ double family_p(const std::vector<Tried>& tried, double best_gain) {
   std::vector<char> beaten(kNullDraws, 0);
   oneapi::tbb::parallel_for(0, kNullDraws, [&](int draw) {
     const auto d = static_cast<std::size_t>(draw);
-    for (const Tried& one : tried) {
+    for (const Score& one : scores) {
       if (one.usable && (one.white * signs[d]).squaredNorm() >= best_gain) {
         beaten[d] = 1;
         return;

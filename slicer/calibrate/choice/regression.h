@@ -7,9 +7,9 @@
 #include <array>
 #include <vector>
 
-#include "slicer/calibrate/candidates/candidate.h"
 #include "slicer/calibrate/residual/printed_error.h"
 #include "slicer/calibrate/residual/surface.h"
+#include "slicer/model/effects/candidates.h"
 
 namespace binderjet::regression {
 
@@ -38,10 +38,11 @@ struct Normal {
   std::vector<Vector> right;  // per cell
 };
 
-// Columns of the known effects and their own normal equations. `columns` must outlive it.
-class Known {
+// Columns of the effects that are in the model already and their own normal equations. `columns`
+// must outlive it.
+class FittedAlready {
  public:
-  Known(const std::vector<std::vector<float>>& columns, const Field& field);
+  FittedAlready(const std::vector<std::vector<float>>& columns, const Field& field);
 
   // The residual less what the known columns take of it.
   const std::vector<float>& residual() const { return residual_; }
@@ -61,8 +62,9 @@ class Known {
   Eigen::LDLT<Matrix> solver_;
 };
 
-// A candidate fitted on all cells, and what it takes of each where the fit did not look.
-struct Tried {
+// The score of a candidate: fitted on all cells, and what it takes of each where the fit did not
+// look.
+struct Score {
   bool usable = false;
   Vector fit;
   std::vector<double> gain;  // per cell, mean over the axes of the folds
@@ -72,9 +74,9 @@ struct Tried {
 };
 
 // `power` is that of the residual.
-Tried attempt(const Candidate& candidate, const Normal& normal, double power);
+Score score_of(const Candidate& candidate, const Normal& normal, double power);
 
 // How often a residual with the signs of its cells drawn at random looks as good to any candidate.
-double family_p(const std::vector<Tried>& tried, double best_gain);
+double p_over_all_columns(const std::vector<Score>& scores, double best_gain);
 
 }  // namespace binderjet::regression

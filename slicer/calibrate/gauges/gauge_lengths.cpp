@@ -15,6 +15,12 @@
 namespace binderjet {
 namespace {
 
+// What the steps of the ladder are called.
+const std::string kGrowth = "growth";
+const std::string kLayerShift = "layer shift";
+const std::string kBedPlace = "place on the bed";
+const std::string kScale = "scale";  // a form of growth
+
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
@@ -96,7 +102,7 @@ TermForm centred(TermForm form, const Readings& readings) {
 
 Term reading_term(const Readings& readings, const std::vector<std::size_t>& axes,
                   const std::string& first, bool per_batch) {
-  Term term{per_batch ? "layer shift per batch" : "layer shift", {}};
+  Term term{per_batch ? kLayerShift + " per batch" : kLayerShift, {}};
   for (const std::size_t a : axes) {
     const auto label = reading_label(a, first);
     const auto per = [=](const LengthBlock& block, std::size_t axis) {
@@ -204,6 +210,15 @@ double spread_of_readings(const Readings& readings) {
 
 }  // namespace
 
+std::optional<LengthTerm> length_term(const Rung& rung) {
+  if (rung.name.starts_with(kGrowth)) {
+    return rung.form == kScale ? LengthTerm::kScale : LengthTerm::kOffset;
+  }
+  if (rung.name.starts_with(kLayerShift)) return LengthTerm::kLayerShift;
+  if (rung.name == kBedPlace) return LengthTerm::kBedPlace;
+  return std::nullopt;
+}
+
 bool has_lengths(const GaugeTable& table) { return !axes_in(table).empty(); }
 
 int LengthFindings::offset_batches() const {
@@ -229,9 +244,9 @@ LengthFindings trace_lengths(const GaugeTable& table, const LengthRules& rules) 
   }
   std::vector<Term> terms;
   terms.push_back(
-      {"growth per batch",
-       {readings.form("offset", batch_label, one), readings.form("scale", batch_label, nominal)}});
-  terms.push_back({"growth per batch and axis",
+      {kGrowth + " per batch",
+       {readings.form("offset", batch_label, one), readings.form(kScale, batch_label, nominal)}});
+  terms.push_back({kGrowth + " per batch and axis",
                    {readings.form(
                        "offset",
                        [](const LengthBlock& block, std::size_t axis) {
@@ -243,7 +258,7 @@ LengthFindings trace_lengths(const GaugeTable& table, const LengthRules& rules) 
   const bool several_readings = shift.forms.front().columns.cols() > 0;
   if (several_readings) terms.push_back(std::move(shift));
   std::vector<TermForm> positions = position_forms(readings);
-  if (!positions.empty()) terms.push_back({"place on the bed", std::move(positions)});
+  if (!positions.empty()) terms.push_back({kBedPlace, std::move(positions)});
   if (several_readings && batches_of(blocks).size() > 1) {
     terms.push_back(reading_term(readings, axes, first_reading, true));
   }

@@ -8,11 +8,13 @@
 #pragma once
 
 #include <array>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "slicer/calibrate/gauges/gauge_table.h"
 #include "slicer/calibrate/gauges/nested_models.h"
+#include "slicer/model/effects/effect.h"
 
 namespace binderjet {
 
@@ -56,6 +58,10 @@ struct LengthFindings {
 
   int offset_batches() const;  // those in which the offset is the better one
 };
+
+// What a step of trace_lengths()' ladder says of the printer, for the kinds of effects that would
+// cause it (EffectKind::length_causes).
+std::optional<LengthTerm> length_term(const Rung& rung);
 
 // Error{kBadInput} with file:line for a number that is none or a nominal length that is not above
 // 0, and where too few parts are left to hold any out.

@@ -6,8 +6,8 @@
 
 #include <algorithm>
 #include <cmath>
-#include <functional>
 
+#include "slicer/model/effects/candidates.h"
 #include "slicer/model/printer_model.h"
 
 namespace binderjet {
@@ -48,65 +48,6 @@ Misfit misfit(const std::vector<GaugeReading>& readings, const std::vector<doubl
   return out;
 }
 
-// A number of the model that may be wrong: what is tried, and what the model is with it.
-struct Knob {
-  std::string kind;
-  std::vector<double> values;
-  std::function<std::vector<EffectSpec>(double)> with;
-  std::function<std::string(double)> text;
-  int numbers = 1;
-};
-
-// Finds the place of the first effect that has this number.
-std::size_t find_number(const std::vector<EffectSpec>& effects, const std::string& name,
-                        std::initializer_list<const char*> kinds) {
-  std::size_t place = 0;
-  while (place < effects.size() &&
-         (effects[place].numbers.count(name) == 0 ||
-          std::find(kinds.begin(), kinds.end(), effects[place].kind) == kinds.end())) {
-    ++place;
-  }
-  return place;
-}
-
-std::vector<double> steps(double from, double to, int count) {
-  std::vector<double> out;
-  for (int i = 0; i < count; ++i) out.push_back(from + (to - from) * i / (count - 1));
-  return out;
-}
-
-std::vector<Knob> knobs(const std::vector<EffectSpec>& declared) {
-  std::vector<Knob> all;
-  if (const std::size_t at = find_number(declared, "level", {"threshold", "fill"});
-      at < declared.size()) {
-    all.push_back({"threshold", steps(0.01, 0.99, 99),
-                   [=](double level) {
-                     std::vector<EffectSpec> effects = declared;
-                     effects[at].numbers["level"] = {level};
-                     return effects;
-                   },
-                   [=](double level) {
-                     return fmt::format("powder binds at a dose of {:.2f}, not {:g}", level,
-                                        declared[at].number("level"));
-                   }});
-  }
-  if (const std::size_t at = find_number(declared, "width_mm", {"spread"}); at < declared.size()) {
-    all.push_back({"kernel_x", steps(0.5, 3, 101),
-                   [=](double factor) {
-                     std::vector<EffectSpec> effects = declared;
-                     for (double& width : effects[at].numbers["width_mm"]) width *= factor;
-                     return effects;
-                   },
-                   [=](double factor) {
-                     return fmt::format("binder spreads {:.2f} times as wide: {:.2f} x {:.2f} mm",
-                                        factor, factor * declared[at].number("width_mm", 0),
-                                        factor * declared[at].number("width_mm", 1));
-                   },
-                   2});
-  }
-  return all;
-}
-
 // The place of the least value; a grid prints many values alike, and of those it is the middle one.
 std::size_t least_of(const std::vector<double>& values) {
   const double least = *std::min_element(values.begin(), values.end());
@@ -136,10 +77,11 @@ double heldout_rms(const std::vector<GaugeReading>& readings,
   return std::sqrt(squares / static_cast<double>(readings.size()));
 }
 
-Explanation explain(const Knob& knob, const Grid& grid, const std::vector<GaugeReading>& readings) {
-  std::vector<std::vector<double>> predicted(knob.values.size());
-  oneapi::tbb::parallel_for(std::size_t{0}, knob.values.size(), [&](std::size_t i) {
-    predicted[i] = predict(knob.with(knob.values[i]), grid, readings);
+Explanation explain(const GaugeChange& change, const Grid& grid,
+                    const std::vector<GaugeReading>& readings) {
+  std::vector<std::vector<double>> predicted(change.values.size());
+  oneapi::tbb::parallel_for(std::size_t{0}, change.values.size(), [&](std::size_t i) {
+    predicted[i] = predict(change.with(change.values[i]), grid, readings);
   });
   std::vector<Misfit> misfits;
   for (const std::vector<double>& one : predicted) misfits.push_back(misfit(readings, one));
@@ -147,26 +89,26 @@ Explanation explain(const Knob& knob, const Grid& grid, const std::vector<GaugeR
   for (const Misfit& one : misfits) squares.push_back(one.squares);
   const auto best = misfits.begin() + static_cast<std::ptrdiff_t>(least_of(squares));
   Explanation out;
-  out.kind = knob.kind;
-  out.value = knob.values[static_cast<std::size_t>(best - misfits.begin())];
-  out.text = knob.text(out.value);
-  out.effects = knob.with(out.value);
+  out.kind = change.kind;
+  out.value = change.values[static_cast<std::size_t>(best - misfits.begin())];
+  out.text = change.text(out.value);
+  out.effects = change.with(out.value);
   out.predicted_mm = predicted[static_cast<std::size_t>(best - misfits.begin())];
   out.heldout_rms_mm = heldout_rms(readings, predicted);
   out.rms_mm = best->rms_mm;
   out.agrees = best->agrees;
-  out.changed_numbers = knob.numbers;
+  out.changed_numbers = change.numbers;
   // As good as the best: agreeing with all readings, or else within one standard error of the best.
   const auto good = [&](const Misfit& m) {
     return best->agrees ? m.agrees : m.squares <= best->squares + 1;
   };
   out.low = out.high = out.value;
   for (auto m = best; good(*m); --m) {
-    out.low = knob.values[static_cast<std::size_t>(m - misfits.begin())];
+    out.low = change.values[static_cast<std::size_t>(m - misfits.begin())];
     if (m == misfits.begin()) break;
   }
   for (auto m = best; m != misfits.end() && good(*m); ++m) {
-    out.high = knob.values[static_cast<std::size_t>(m - misfits.begin())];
+    out.high = change.values[static_cast<std::size_t>(m - misfits.begin())];
   }
   return out;
 }
@@ -213,8 +155,8 @@ SlotFindings trace_slots(std::vector<GaugeReading> readings,
   found.declared_rms_mm = before.rms_mm;
   found.declared_agrees = before.agrees;
   if (before.agrees) return found;
-  for (const Knob& knob : knobs(declared)) {
-    found.explanations.push_back(explain(knob, grid, found.readings));
+  for (const GaugeChange& change : all_gauge_changes(declared)) {
+    found.explanations.push_back(explain(change, grid, found.readings));
   }
   // Of those that agree, the one that changes the least numbers: more could agree with anything.
   std::stable_sort(found.explanations.begin(), found.explanations.end(),

@@ -46,7 +46,7 @@ std::vector<GaugeReading> read_slots(const GaugeTable& table);
 
 // A change of one number that could explain the readings.
 struct Explanation {
-  std::string kind;  // "threshold", "kernel_x" ... of the effect catalogue
+  std::string kind;  // GaugeChange::kind
   std::string text;  // "level 0.15 instead of 0.5"
   double value = 0;  // the number that fits best
   double low = 0;    // it may be from here

@@ -1,57 +1,27 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // What a calibration finds: the residual of a declared model traced to effects that it lacks
-// (DESIGN section 10), as plain data for calibration.json, the new profile and the report.
+// (slicer/MODEL.md, "How calibrate chooses"), as plain data for calibration.json, the new profile
+// and the report.
 #pragma once
 
-#include <array>
-#include <functional>
+#include <cstdint>
 #include <map>
 #include <optional>
 #include <string>
 #include <vector>
 
-#include "slicer/layers/grid.h"
-#include "slicer/layers/run_layer.h"
-#include "slicer/layers/stream.h"
+#include "slicer/model/effects/covariate.h"
 #include "slicer/model/effects/effect.h"
 
 namespace binderjet {
 
-// A print that was measured: the masks that were sent and what came out, once per replicate.
-struct MeasuredJob {
-  std::string name;  // for messages and the report
-  Grid grid;
-  JobPlace place;
-  int first_layer = 0;                  // the number of masks[0]
-  std::vector<Shared<RunLayer>> masks;  // at the printer grid
-  // Each replicate has one layer per mask, at the voxel grid in x and y, registered to the masks.
-  std::vector<std::vector<Shared<RunLayer>>> prints;
-  // The prints come from a scanner: they may still be a little shifted, turned and blurred.
-  bool scanned = false;
-  // Called many times a second during long work, from any of its threads; may throw to end it.
-  std::function<void()> on_check;
-
-  void check() const {
-    if (on_check) on_check();
-  }
-  int layers() const { return static_cast<int>(masks.size()); }
-};
-
-// What the residual depends on (DESIGN section 10).
-struct Covariate {
-  std::string axis;  // x, y, z, layer, direction, density, facing, edge_distance, position
-  std::string form;  // trend, periodic, step, window, local; empty: constant
-  std::map<std::string, std::vector<double>> numbers;  // direction_deg, period_mm, at_mm, ...
-
-  bool operator==(const Covariate&) const = default;
-};
-
 struct FoundEffect {
-  std::string kind;  // a word of the effect catalogue, or "empirical"
+  std::string kind;   // its word in calibration.json
+  bool named = true;  // false: the residual follows the covariate, and no effect says why
   std::map<std::string, std::vector<double>> parameters;
   Covariate covariate;
   std::vector<std::string> rivals;  // kinds that this print cannot tell from it
-  double p = 1;                     // family-wise: over all candidates that were tried
+  double p = 1;                     // over all candidates that were tried
   double heldout_gain = 0;          // share of the residual's power gone where the fit did not look
 };
 
@@ -87,8 +57,20 @@ struct Remaining {
   double share = 0;
 };
 
+enum class Verdict {
+  kNone,         // nothing is missing that the print shows
+  kEffect,       // an effect that has a name is
+  kUnexplained,  // something is, and it has no name
+};
+// The word of calibration.json.
+inline const char* word(Verdict verdict) {
+  return verdict == Verdict::kNone     ? "none"
+         : verdict == Verdict::kEffect ? "effect"
+                                       : "unexplained";
+}
+
 struct Calibration {
-  std::string verdict;  // "effect", "none" or "unexplained"
+  Verdict verdict = Verdict::kNone;
   std::vector<FoundEffect> effects;
   std::optional<Remaining> remaining;
   std::vector<BeforeAfter> scores;  // the first is what `before` and `after` of the JSON say

@@ -6,7 +6,6 @@
 #include <cstdint>
 #include <vector>
 
-#include "slicer/calibrate/candidates/candidate.h"
 #include "slicer/calibrate/residual/surface.h"
 
 namespace binderjet {

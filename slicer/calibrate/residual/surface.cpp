@@ -166,7 +166,9 @@ std::vector<SurfacePoint> surface_points(const MeasuredJob& job,
   const std::array<int, 2> reach_vx{pixels_for(reach_mm, job.grid.voxel_mm(0)),
                                     pixels_for(reach_mm, job.grid.voxel_mm(1))};
   const PrinterModel printer(model, job.grid, job.place);
-  const bool worn = !printer.form().wear.empty();
+  const std::vector<Wear>& wear = printer.form().wear;
+  const bool worn =
+      std::any_of(wear.begin(), wear.end(), [](const Wear& step) { return !step.keeps_edges; });
   const DoseProbe probe(printer.form(), job.grid, job.place);
   std::vector<LayerPoints> of_layer(printed.size());
   oneapi::tbb::parallel_for(0, job.layers(), [&](int index) {

@@ -3,15 +3,16 @@
 //
 // Each edge between a voxel that the model prints and one that it does not is paired with the
 // nearest measured edge of the same sign in its row or column. There the true dose equals the
-// level, so level - dose of the model is what the model misses (shared notes: "The residual, in
-// dose"). What a candidate would add is looked up at the *model's* edge: at the measured one it
+// level, so level - dose of the model is what the model misses (slicer/MODEL.md, "How calibrate
+// chooses"). What a candidate would add is looked up at the *model's* edge: at the measured one it
 // would be correlated with the noise that put the edge there.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <vector>
 
-#include "slicer/calibrate/job/calibration.h"
+#include "slicer/calibrate/job/measured_job.h"
 #include "slicer/calibrate/residual/dose_probe.h"
 
 namespace binderjet {

@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "slicer/base/error.h"
+#include "slicer/model/effects/catalogue.h"
 
 namespace binderjet {
 
@@ -22,6 +23,13 @@ void AssembledModel::shift(std::function<std::array<double, 2>(const Spot&)> by_
   placed.shifts.push_back({std::move(by_mm), std::max(std::abs(most_mm[0]), std::abs(most_mm[1]))});
 }
 
+void AssembledModel::wear_first(Wear step) {
+  const auto after =
+      std::find_if(wear.begin(), wear.end(), [](const Wear& other) { return !other.keeps_edges; });
+  step.keeps_edges = true;
+  wear.insert(after, std::move(step));
+}
+
 void AssembledModel::ask_density(double radius_mm) {
   if (placed.density_radius_mm && *placed.density_radius_mm != radius_mm) {
     throw Error(ErrorKind::kBadInput, "effects", "density is asked for with two radii; keep one");
@@ -36,9 +44,6 @@ Reach AssembledModel::reach(const Grid& grid) const {
     reach.xy_vx[1] = std::max({reach.xy_vx[1], -term.y.first, term.y.last()});
     reach.layers_below = std::max(reach.layers_below, -term.layer);
     reach.layers_above = std::max(reach.layers_above, term.layer);
-  }
-  for (const std::array<int, 2>& box : survive_vx) {
-    for (std::size_t axis = 0; axis < 2; ++axis) reach.xy_vx[axis] += box[axis] - 1;
   }
   for (int axis = 0; axis < 2 && !placed.shifts.empty(); ++axis) {
     reach.xy_vx[static_cast<std::size_t>(axis)] += placed.most_shift_vx(grid, axis);
@@ -75,6 +80,15 @@ AssembledModel::Received AssembledModel::received(std::span<const RunLayer* cons
     out.masks[middle] = out.powder.get();
   }
   return out;
+}
+
+AssembledModel assemble(const EffectList& effects, const Grid& grid, const JobPlace& place) {
+  AssembledModel form;
+  form.place = place;
+  for (const EffectSpec& effect : effects) {
+    find_effect_kind(effect.kind)->write_into(effect, grid, form);
+  }
+  return form;
 }
 
 }  // namespace binderjet

@@ -27,6 +27,8 @@ struct LayerMove {
 struct Wear {
   Reach reach;
   std::function<RunLayer(std::span<const RunLayer* const>)> apply;
+  // What this wear leaves ends where it ended before, so that a surface still tells the dose there.
+  bool keeps_edges = false;
 };
 
 // What the effects of a model add up to. Each effect's forward form writes its share into it, so
@@ -35,10 +37,7 @@ struct AssembledModel {
   // The dose is the sum of these. Before any effect a pixel's binder stays in its pixel.
   std::vector<DoseTerm> terms{DoseTerm{}};
   double level = 0;  // a voxel is bound iff its dose is at least this; 0: no effect has said so
-  // Bound powder that holds no such box (voxels in x and y) is brushed off.
-  std::vector<std::array<int, 2>> survive_vx;
-  // In their order, after that.
-  std::vector<Wear> wear;
+  std::vector<Wear> wear;  // in the order in which the part suffers it
   std::vector<LayerMove> moves;
   // What depends on the place on the bed, in mm; `place` is where the job is on it.
   PlacedDose placed;
@@ -47,6 +46,8 @@ struct AssembledModel {
   // Shifts every mask by by_mm(spot); neither component is ever larger than that of `most_mm`.
   void shift(std::function<std::array<double, 2>(const Spot&)> by_mm,
              const std::array<double, 2>& most_mm);
+  // Adds wear that comes before all that moves edges, whatever the order of the effects.
+  void wear_first(Wear step);
   // Asks for Spot::density; Error{kBadInput} if another effect asks for another radius.
   void ask_density(double radius_mm);
   // Declares the level; Error{kBadInput} if another effect already has.
@@ -61,5 +62,8 @@ struct AssembledModel {
   };
   Received received(std::span<const RunLayer* const> window, int layer) const;
 };
+
+// What these effects add up to for a job that stands at `place`. Error{kBadInput} from the effects.
+AssembledModel assemble(const EffectList& effects, const Grid& grid, const JobPlace& place);
 
 }  // namespace binderjet

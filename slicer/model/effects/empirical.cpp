@@ -1,14 +1,35 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "slicer/model/effects/empirical.h"
-
+// Empirical: a measured dependence without a mechanism, by what it depends on.
+//
+//   acts = "dose" | "shift_x" | "shift_y": the dose is multiplied by 1 + f(u), or the masks are
+//          shifted by f(u) mm
+//   axis = "x" | "y" | "z": u is the place on the bed in mm
+//        | "layer": the number of the layer, from 0 on the bed
+//        | "direction": the place along direction_deg (from x, 0, to y, 90), in mm
+//        | "density": the solid share within radius_mm
+//        | "edge_distance": the way from the side of the job's box, in mm
+//        | "position": the way from center_mm = [x, y]
+//   form = "trend":    f(u) = amount (u - from), within -0.9 and 0.9
+//        | "step":     amount from `at` on
+//        | "window":   amount from `from` to `to`
+//        | "local":    amount exp(-(u - at)^2 / (2 width^2))
+//        | "periodic": c cos(2 pi u / period) + s sin(2 pi u / period), wave = [c, s]
+//        | "pulse":    amount from `at` on over `width`, again after each period
+//
+// What an axis and a form need must be there; amounts are above -5 and at most 5. Its candidates,
+// the scan for what has no name, are in empirical_scan.cpp.
 #include <algorithm>
 #include <cmath>
 #include <numbers>
 
 #include "slicer/base/error.h"
 #include "slicer/model/effects/assembled_model.h"
+#include "slicer/model/effects/covariate.h"
 
 namespace binderjet {
+
+void add_empirical_candidates(CandidateList& list);  // empirical_scan.cpp
+
 namespace {
 
 // A trend may not run away where nobody measured.
@@ -90,7 +111,7 @@ std::pair<Of, double> shape_of(const EffectSpec& spec) {
           kMost};
 }
 
-void add(const EffectSpec& spec, const Grid&, AssembledModel& form) {
+void write_into(const EffectSpec& spec, const Grid&, AssembledModel& form) {
   if (spec.words.at("axis") == "density") form.ask_density(need(spec, "radius_mm"));
   const Place place = place_of(spec, form.place);
   const auto [of, most] = shape_of(spec);
@@ -112,25 +133,113 @@ void add(const EffectSpec& spec, const Grid&, AssembledModel& form) {
       most_mm);
 }
 
+// Which layers a pulse is in is found by the scan: between two of them there is nothing to fit.
+bool is_no_pulse(const EffectSpec& spec, double) { return spec.words.at("form") != "pulse"; }
+// Every second layer is every second layer.
+bool is_no_pulse_nor_parity(const EffectSpec& spec, double period) {
+  return is_no_pulse(spec, period) && period != 2;
+}
+// What runs along an axis of the printer has no reason to be turned by a little.
+bool is_askew(const EffectSpec& spec, double direction_deg) {
+  return is_no_pulse(spec, direction_deg) && std::fmod(direction_deg, 90) != 0;
+}
+
+// A place along an axis that has layers or voxels.
+double one_cell(const EffectSpec& spec, double, const Grid& grid) {
+  const std::string& axis = spec.words.at("axis");
+  return axis == "z"   ? grid.pitch_mm[2]
+         : axis == "x" ? grid.voxel_mm(0)
+         : axis == "y" ? grid.voxel_mm(1)
+                       : 0;
+}
+
+EffectSpec effect(const char* acts, const char* axis, const char* form,
+                  std::map<std::string, std::vector<double>> numbers) {
+  return {"empirical", {{"acts", acts}, {"axis", axis}, {"form", form}}, std::move(numbers)};
+}
+
+void update_covariate(const EffectSpec& fitted, Covariate& covariate) {
+  const auto copy = [&](const char* from, const char* to) {
+    if (covariate.numbers.contains(to) && fitted.numbers.contains(from)) {
+      covariate.numbers[to] = fitted.numbers.at(from);
+    }
+  };
+  copy("period", covariate.axis == Covariate::Axis::kLayer ? "period_layers" : "period_mm");
+  copy("direction_deg", "direction_deg");
+  copy("center_mm", "centre_mm");
+}
+
+constexpr double kFar = 10000;
+
+NumberRule place_rule(const char* name) {
+  return {.name = name, .min = -kFar, .max = kFar, .optional = true, .search_step = one_cell};
+}
+
 }  // namespace
 
-EffectKind empirical_kind() {
-  constexpr double kFar = 10000;
-  return {"empirical",
-          {{"acts", {"dose", "shift_x", "shift_y"}},
-           {"axis", {"x", "y", "z", "layer", "direction", "density", "edge_distance", "position"}},
-           {"form", {"trend", "periodic", "pulse", "step", "window", "local"}}},
-          {{"amount", 1, -5, 5, 0, 0, true},
-           {"wave", 2, -5, 5, 0, 0, true},
-           {"from", 1, -kFar, kFar, 0, 0, true},
-           {"to", 1, -kFar, kFar, 0, 0, true},
-           {"at", 1, -kFar, kFar, 0, 0, true},
-           {"width", 1, 0, kFar, 0, 0, true},
-           {"period", 1, 0, kFar, 0, 0, true},
-           {"direction_deg", 1, -360, 360, 0, 0, true},
-           {"radius_mm", 1, 0, 10, 0, 0, true},
-           {"center_mm", 2, -kFar, kFar, 0, 0, true}},
-          add};
+EffectKind empirical_effect() {
+  return {
+      .name = "empirical",
+      .words = {{"acts", {"dose", "shift_x", "shift_y"}},
+                {"axis",
+                 {"x", "y", "z", "layer", "direction", "density", "edge_distance", "position"}},
+                {"form", {"trend", "periodic", "pulse", "step", "window", "local"}}},
+      .numbers =
+          {{.name = "amount", .min = -5, .max = 5, .optional = true, .fit_step = 0.005},
+           {.name = "wave",
+            .count = 2,
+            .min = -5,
+            .max = 5,
+            .optional = true,
+            .fit_step = 0.003,
+            .fits = is_no_pulse},
+           place_rule("from"),
+           place_rule("to"),
+           place_rule("at"),
+           {.name = "width",
+            .min = 0,
+            .max = kFar,
+            .optional = true,
+            .fit_share = 0.05,
+            .fits = is_no_pulse},
+           {.name = "period",
+            .min = 0,
+            .max = kFar,
+            .optional = true,
+            .fit_share = 0.002,
+            .fits = is_no_pulse_nor_parity},
+           {.name = "direction_deg",
+            .min = -360,
+            .max = 360,
+            .optional = true,
+            .fit_step = 0.5,
+            .fits = is_askew},
+           {.name = "radius_mm", .min = 0, .max = 10, .optional = true, .search_step = one_tenth},
+           {.name = "center_mm",
+            .count = 2,
+            .min = -kFar,
+            .max = kFar,
+            .optional = true,
+            .fit_step = 0.05,
+            .fits = is_no_pulse}},
+      .write_into = write_into,
+      .examples = {effect("shift_x", "y", "periodic", {{"period", {0.9}}, {"wave", {0.1, 0.05}}}),
+                   effect("dose", "layer", "pulse",
+                          {{"period", {3}}, {"at", {1}}, {"width", {1}}, {"amount", {-0.4}}}),
+                   effect(
+                       "dose", "position", "local",
+                       {{"center_mm", {4.5, 6}}, {"at", {0}}, {"width", {0.5}}, {"amount", {0.4}}}),
+                   effect("shift_y", "z", "step", {{"at", {0.25}}, {"amount", {0.1}}}),
+                   effect("dose", "x", "window", {{"from", {4}}, {"to", {5}}, {"amount", {-0.4}}}),
+                   effect("dose", "direction", "trend",
+                          {{"direction_deg", {30}}, {"from", {5.5}}, {"amount", {0.3}}}),
+                   effect("dose", "density", "trend",
+                          {{"radius_mm", {0.4}}, {"from", {0.3}}, {"amount", {0.5}}}),
+                   effect("dose", "edge_distance", "local",
+                          {{"at", {0}}, {"width", {0.5}}, {"amount", {-0.4}}})},
+      .nameless = true,
+      .add_candidates = add_empirical_candidates,
+      .update_covariate = update_covariate};
 }
 
 }  // namespace binderjet

@@ -1,15 +1,21 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "slicer/model/effects/infiltrant.h"
-
+// Infiltrant: glue or wax drawn into the finished part fills narrow gaps and concave corners, and
+// leaves a skin.
+//
+//   radius_mm: gaps narrower than twice this are filled (morphological closing by a ball); above 0,
+//              at most 1
+//   skin_mm: how much every face grows, 0 to radius_mm
 #include <algorithm>
 
 #include "slicer/model/effects/assembled_model.h"
+#include "slicer/model/effects/candidates.h"
 #include "slicer/model/wear/morphology.h"
 
 namespace binderjet {
 namespace {
 
-void add(const EffectSpec& spec, const Grid& grid, AssembledModel& form) {
+// Grown by the ball, and taken back by one that is smaller by the skin.
+void write_into(const EffectSpec& spec, const Grid& grid, AssembledModel& form) {
   const double radius = spec.number("radius_mm");
   const Ellipsoid out(radius, grid);
   const Ellipsoid back(std::max(0.0, radius - spec.number("skin_mm")), grid);
@@ -25,10 +31,29 @@ void add(const EffectSpec& spec, const Grid& grid, AssembledModel& form) {
                        }});
 }
 
+EffectSpec effect(double radius_mm, double skin_mm) {
+  return {"infiltrant", {}, {{"radius_mm", {radius_mm}}, {"skin_mm", {skin_mm}}}};
+}
+
+void add_trials(TrialList& list) {
+  for (const double radius_mm : {0.12, 0.25}) {
+    for (const double skin_mm : {0.0, 0.06}) {
+      list.wears.push_back(
+          {effect(radius_mm, skin_mm), {Covariate::Axis::kFacing, Covariate::Form::kLocal}});
+    }
+  }
+}
+
 }  // namespace
 
-EffectKind infiltrant_kind() {
-  return {"infiltrant", {}, {{"radius_mm", 1, 0, 1}, {"skin_mm", 1, -1e-9, 1}}, add};
+EffectKind infiltrant_effect() {
+  return {.name = "infiltrant",
+          .numbers = {{.name = "radius_mm", .min = 0, .max = 1, .search_step = one_tenth},
+                      {.name = "skin_mm", .min = -1e-9, .max = 1, .search_step = one_voxel_y}},
+          .write_into = write_into,
+          .examples = {effect(0.2, 0.1)},
+          .once = true,
+          .add_trials = add_trials};
 }
 
 }  // namespace binderjet

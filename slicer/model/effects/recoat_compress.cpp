@@ -1,17 +1,21 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "slicer/model/effects/recoat_compress.h"
-
+// Compression: the roller presses the layers below it, so the print is lower than it was sent.
+//
+//   share: of the height, above -0.2, at most 0.2; negative: the print is higher. No layer is moved
+//   by more than kMostLayers.
 #include <algorithm>
 #include <cmath>
 
 #include "slicer/model/effects/assembled_model.h"
+#include "slicer/model/effects/candidates.h"
 
 namespace binderjet {
 namespace {
 
 constexpr int kMostLayers = 8;  // what a stream holds of the job on each side
+constexpr double kMostShare = 0.2;
 
-void add(const EffectSpec& spec, const Grid&, AssembledModel& form) {
+void write_into(const EffectSpec& spec, const Grid&, AssembledModel& form) {
   const double share = spec.number("share");
   // At the middle of printed layer k lies what was meant for (k + 1/2) / (1 - share).
   const double lower = share / (1 - share);
@@ -23,10 +27,31 @@ void add(const EffectSpec& spec, const Grid&, AssembledModel& form) {
                         kMostLayers});
 }
 
+EffectSpec effect(double share) { return {"recoat_compress", {}, {{"share", {share}}}}; }
+
+// Shares that move the top by half a layer more each.
+void add_trials(TrialList& list) {
+  const int top = list.job.first_layer + list.job.layers;
+  for (int halves = -2 * kMostMovedLayers; halves <= 2 * kMostMovedLayers; ++halves) {
+    const double share = halves / 2.0 / top;
+    if (halves == 0 || std::abs(share) > kMostShare) continue;
+    list.orders.push_back(
+        {effect(share), {Covariate::Axis::kZ, Covariate::Form::kTrend}, [share](int layer) {
+           return static_cast<int>(std::floor((layer + 0.5) / (1 - share))) - layer;
+         }});
+  }
+}
+
 }  // namespace
 
-EffectKind recoat_compress_kind() {
-  return {"recoat_compress", {}, {{"share", 1, -0.2, 0.2}}, add};
+EffectKind recoat_compress_effect() {
+  return {.name = "recoat_compress",
+          .numbers =
+              {{.name = "share", .min = -kMostShare, .max = kMostShare, .search_step = one_tenth}},
+          .write_into = write_into,
+          .examples = {effect(0.15)},
+          .once = true,
+          .add_trials = add_trials};
 }
 
 }  // namespace binderjet

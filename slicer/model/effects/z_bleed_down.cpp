@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "slicer/model/effects/z_bleed_down.h"
-
+// Bleed down: what a layer has too much of seeps into the layers below it.
+//
+//   share: layer k gets share^j of the binder of layer k + j, beside its own; above 0, at most 0.9
 #include "slicer/model/effects/assembled_model.h"
+#include "slicer/model/effects/candidates.h"
 
 namespace binderjet {
 namespace {
@@ -10,7 +12,7 @@ namespace {
 constexpr double kLeastShare = 0.01;
 constexpr int kMostLayers = 8;
 
-void add(const EffectSpec& spec, const Grid&, AssembledModel& form) {
+void write_into(const EffectSpec& spec, const Grid&, AssembledModel& form) {
   const std::vector<DoseTerm> own = form.terms;
   double share = 1;
   for (int j = 1; j <= kMostLayers; ++j) {
@@ -24,8 +26,20 @@ void add(const EffectSpec& spec, const Grid&, AssembledModel& form) {
   }
 }
 
+EffectSpec effect(double share) { return {"z_bleed_down", {}, {{"share", {share}}}}; }
+
 }  // namespace
 
-EffectKind z_bleed_down_kind() { return {"z_bleed_down", {}, {{"share", 1, 0, 0.9}}, add}; }
+EffectKind z_bleed_down_effect() {
+  return {
+      .name = "z_bleed_down",
+      .numbers = {{.name = "share", .min = 0, .max = 0.9, .fit_step = 0.01}},
+      .write_into = write_into,
+      .examples = {effect(0.4)},
+      .once = true,
+      .add_candidates = [](CandidateList& list) {
+        list.add_from_zero({Covariate::Axis::kZ, Covariate::Form::kTrend}, 0.1, effect, 0.01, 0.85);
+      }};
+}
 
 }  // namespace binderjet

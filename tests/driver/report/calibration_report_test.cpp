@@ -44,7 +44,7 @@ MeasuredJob job_printed_at(double level) {
 
 Calibration found() {
   Calibration calibration;
-  calibration.verdict = "effect";
+  calibration.verdict = Verdict::kEffect;
   FoundEffect effect;
   effect.kind = "threshold";
   effect.parameters["level"] = {0.3, 0.01};
@@ -52,7 +52,8 @@ Calibration found() {
   effect.p = 0.0004;
   effect.heldout_gain = 0.91;
   calibration.effects.push_back(effect);
-  calibration.remaining = Remaining{{"y", "periodic", {{"period_mm", {11.8}}}}, 0.07};
+  calibration.remaining =
+      Remaining{{Covariate::Axis::kY, Covariate::Form::kPeriodic, {{"period_mm", {11.8}}}}, 0.07};
   calibration.scores.push_back({"second print",
                                 {0.031, 0.02, 0.04, 0.1},
                                 {0.012, 0.01, 0.02, 0.1},
@@ -89,7 +90,7 @@ TEST(CalibrationReport, SaysVerdictErrorsRivalsAndWhatRemains) {
 
 TEST(CalibrationReport, ClaimsNothingWhereNothingWasFound) {
   Calibration none = found();
-  none.verdict = "none";
+  none.verdict = Verdict::kNone;
   none.effects.clear();
   none.remaining.reset();
   none.after_model = none.before_model;

@@ -7,8 +7,8 @@
 #include <array>
 
 #include "slicer/calibrate/calibrate.h"
-#include "slicer/calibrate/candidates/candidate.h"
 #include "slicer/calibrate/residual/printed_error.h"
+#include "slicer/model/effects/candidates.h"
 
 namespace binderjet {
 namespace {
@@ -23,7 +23,7 @@ std::vector<double> gain_in(int cells) {
 
 double p_of(const std::vector<double>& gain) {
   const std::array<const std::vector<double>*, 1> family{&gain};
-  return family_p(family, sum_of_cells(gain));
+  return p_over_all_gains(family, sum_of_cells(gain));
 }
 
 TEST(SignFlips, AreNoSurerOfAFewCellsThanTheirCoinsCanBe) {
@@ -39,7 +39,7 @@ TEST(SignFlips, CountTheWholeFamilyAgainstTheBest) {
   other.back() = 6;
   const std::vector<double> best = gain_in(5);
   const std::array<const std::vector<double>*, 2> family{&best, &other};
-  EXPECT_GE(family_p(family, 5), 0.45) << "the other has as much in every second draw";
+  EXPECT_GE(p_over_all_gains(family, 5), 0.45) << "the other has as much in every second draw";
 }
 
 TEST(CalibrationLimits, AskForSizeWhereFewCellsCannotBeSure) {

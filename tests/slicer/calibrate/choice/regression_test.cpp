@@ -19,15 +19,15 @@ regression::Normal normal_of(double in_first, double in_others) {
 }
 
 TEST(Regression, HoldsAgainstACandidateThatItFitsOneCellOnly) {
-  const regression::Tried tried = regression::attempt(Candidate{}, normal_of(1, 0), 1);
-  EXPECT_TRUE(tried.usable);
-  EXPECT_LT(tried.held_out, 0) << "what the one cell teaches is wrong in all the others";
+  const regression::Score score = regression::score_of(Candidate{}, normal_of(1, 0), 1);
+  EXPECT_TRUE(score.usable);
+  EXPECT_LT(score.held_out, 0) << "what the one cell teaches is wrong in all the others";
 }
 
 TEST(Regression, TakesWhatIsTheSameEverywhere) {
-  const regression::Tried tried = regression::attempt(Candidate{}, normal_of(1, 1), kCells);
-  EXPECT_NEAR(tried.held_out, 1, 1e-5) << "all of the residual";
-  EXPECT_TRUE(tried.folds_agree);
+  const regression::Score score = regression::score_of(Candidate{}, normal_of(1, 1), kCells);
+  EXPECT_NEAR(score.held_out, 1, 1e-5) << "all of the residual";
+  EXPECT_TRUE(score.folds_agree);
 }
 
 }  // namespace

@@ -8,7 +8,7 @@
 
 #include "slicer/enhance/inverse/search/tile_surroundings.h"
 #include "slicer/score/voxel_counts.h"
-#include "tests/support/one_of_each.h"
+#include "tests/support/examples.h"
 #include "tests/support/random.h"
 
 namespace binderjet {
@@ -93,17 +93,17 @@ TEST(LocalDose, BindsWhatThePrinterModelPrints) {
   for (int round = 0; round < 300; ++round) {
     SCOPED_TRACE(round);
     const Scene scene(random);
-    if (!scene.offsets.printed.contains(0) || !scene.model.form().survive_vx.empty()) continue;
+    if (!scene.offsets.printed.contains(0) || !scene.model.form().wear.empty()) continue;
     expect_same_print(scene, 0);
     if (testing::Test::HasFatalFailure()) return;
   }
 }
 
-// See slicer/README.md: drops whose weakness follows the mask, and layers that are not where they
-// were sent.
-bool only_the_judge_sees(const EffectSpec& effect) {
-  return effect.kind == "first_drops" || effect.kind == "slice_dropout" ||
-         effect.kind == "recoat_compress";
+// See slicer/README.md: drops whose weakness follows the mask, layers that are not where they were
+// sent, and wear.
+bool only_the_judge_sees(const PrinterModel& model) {
+  const AssembledModel& form = model.form();
+  return !form.placed.weak_drops.empty() || !form.moves.empty() || !form.wear.empty();
 }
 
 const Grid kPlacedGrid{{0.25, 0.2, 0.1}, {2, 2, 2}};
@@ -116,10 +116,10 @@ PrinterModel model_with(const EffectSpec& effect) {
 
 TEST(LocalDose, BindsWhatIsPrintedWithAnyEffect) {
   Random random;
-  for (const EffectSpec& effect : whole::one_of_each()) {
+  for (const EffectSpec& effect : whole::examples_beside_a_level()) {
     SCOPED_TRACE(effect.kind);
-    if (only_the_judge_sees(effect)) continue;
     const PrinterModel model = model_with(effect);
+    if (only_the_judge_sees(model)) continue;
     for (int round = 0; round < 10; ++round) {
       expect_same_print(Scene(random, kPlacedGrid, model), 1e-5);
       if (testing::Test::HasFatalFailure()) return;
@@ -129,11 +129,12 @@ TEST(LocalDose, BindsWhatIsPrintedWithAnyEffect) {
 
 TEST(LocalDose, FlipsAddUpToTheMaskTheyLeadToWithAnyEffect) {
   Random random;
-  for (const EffectSpec& effect : whole::one_of_each()) {
+  for (const EffectSpec& effect : whole::examples_beside_a_level()) {
     SCOPED_TRACE(effect.kind);
-    // The density follows the mask; the solver looks at it once, and again in the next turn.
-    if (effect.kind == "density" || only_the_judge_sees(effect)) continue;
     const PrinterModel model = model_with(effect);
+    // The density follows the mask; the solver looks at it once, and again in the next turn.
+    const bool follows = model.form().placed.density_radius_mm.has_value();
+    if (follows || only_the_judge_sees(model)) continue;
     for (int round = 0; round < 5; ++round) {
       Scene scene(random, kPlacedGrid, model);
       const WindowPlaces places = scene.places();
@@ -164,7 +165,7 @@ TEST(LocalDose, KnowsWhatAFlipChangesBeforeItIsDone) {
   for (int round = 0; round < 300; ++round) {
     SCOPED_TRACE(round);
     Scene scene(random);
-    if (!scene.model.form().survive_vx.empty()) continue;
+    if (!scene.model.form().wear.empty()) continue;
     const WindowPlaces places = scene.places();
     TileSurroundings around(scene.layers, scene.offsets, places, scene.mask);
     LocalDose dose(scene.stamped_models, scene.grid, scene.box, around);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "slicer/calibrate/choice/jitter.h"
+#include "slicer/calibrate/choice/random_layers.h"
 
 #include <algorithm>
 #include <cmath>
@@ -26,35 +26,35 @@ double follows(const std::vector<double>& shifts) {
 
 }  // namespace
 
-std::optional<Jitter> find_jitter(const MeasuredJob& job, const EffectList& model,
-                                  const std::vector<SurfacePoint>& points,
-                                  const std::vector<std::vector<float>>& known) {
+std::optional<RandomLayers> find_random_layers(const MeasuredJob& job, const EffectList& model,
+                                               const std::vector<SurfacePoint>& points,
+                                               const std::vector<std::vector<float>>& known) {
   std::vector<char> has_points(job.masks.size(), 0);
   for (const SurfacePoint& point : points) has_points[static_cast<std::size_t>(point.layer)] = 1;
-  Candidate candidate{"jitter", {"layer", "local", {}}, {}, kAlongZ, {}, model.size()};
+  Candidate candidate{.along = kAlongZ, .effect = model.size()};
   for (int k = 0; k < std::min(job.layers(), kMostLayers); ++k) {
     if (has_points[static_cast<std::size_t>(k)] == 0) continue;
     const int layer = job.first_layer + k;
     const auto here = [layer](const Spot& spot) { return spot.layer == layer ? 1.0 : 0.0; };
-    candidate.columns.push_back({Column::Basis::kShiftX, here, {}, 1});
-    candidate.columns.push_back({Column::Basis::kShiftY, here, {}, 1});
+    candidate.columns.push_back(shift_column(0, here));
+    candidate.columns.push_back(shift_column(1, here));
   }
   if (candidate.columns.size() < 10) return std::nullopt;
   candidate.apply = [&model](std::span<const double>) { return model; };
-  const auto choices = choose(job, model, points, known, {candidate});
-  if (choices.empty() || !choices.front().folds_agree) return std::nullopt;
+  const auto ranked = rank_candidates(job, model, points, known, {candidate});
+  if (ranked.empty() || !ranked.front().folds_agree) return std::nullopt;
 
-  Jitter out;
-  out.p = choices.front().p;
-  out.share = choices.front().share;
+  RandomLayers out;
+  out.p = ranked.front().p;
+  out.share = ranked.front().share;
   bool any = false;
   for (std::size_t axis = 0; axis < 2; ++axis) {
     // Where masks are moved by whole voxels the rest of any shift, 1 / sqrt 12 of a voxel, looks
     // random too.
     const double nothing_mm = 0.4 * job.grid.voxel_mm(static_cast<int>(axis));
     std::vector<double> shifts;
-    for (std::size_t i = axis; i < choices.front().coefficients.size(); i += 2) {
-      shifts.push_back(choices.front().coefficients[i]);
+    for (std::size_t i = axis; i < ranked.front().coefficients.size(); i += 2) {
+      shifts.push_back(ranked.front().coefficients[i]);
     }
     constexpr double kFollows = 0.4;
     double square = 0;

@@ -1,16 +1,18 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The free-form scan: a dose or a shift that depends on a coordinate, whatever the reason.
+// The candidates of the empirical effect: a dose or a shift that depends on a coordinate, whatever
+// the reason. Where an effect of the catalogue has the same columns there is no candidate here.
 #include <algorithm>
 #include <cmath>
 #include <numbers>
 
-#include "slicer/calibrate/candidates/candidate.h"
+#include "slicer/model/effects/candidates.h"
 
 namespace binderjet {
 namespace {
 
+using Axis = Covariate::Axis;
 using Basis = Column::Basis;
-using Coefficients = std::span<const double>;
+using Form = Covariate::Form;
 using Numbers = std::map<std::string, std::vector<double>>;
 
 const std::string& acts_word(Basis basis) {
@@ -22,64 +24,64 @@ const std::string& acts_word(Basis basis) {
 
 class Scan {
  public:
-  Scan(const MeasuredJob& job, const EffectList& model) : job_(job), model_(model) {}
+  explicit Scan(CandidateList& list) : list_(list), job_(list.job()) {}
 
-  std::vector<Candidate> take() {
+  void add_all() {
     for (const Basis acts : {Basis::kDose, Basis::kShiftX, Basis::kShiftY}) {
       add_layers(acts);
       for (std::size_t axis = 0; axis < 2; ++axis) add_along(acts, axis);
     }
     add_directions();
     add_places();
-    return std::move(out_);
   }
 
  private:
   // amount * of(spot), or c cos + s sin of it with `of` in turns.
-  void add(Basis acts, Covariate covariate, unsigned along, Numbers numbers,
-           const std::string& axis, const std::string& form,
-           const std::function<double(const Spot&)>& of) {
-    EffectSpec effect{"empirical",
-                      {{"acts", acts_word(acts)}, {"axis", axis}, {"form", form}},
-                      std::move(numbers)};
+  Candidate& add(Basis acts, Covariate covariate, unsigned along, Numbers numbers,
+                 const std::string& axis, const std::string& form,
+                 const std::function<double(const Spot&)>& of) {
+    const EffectSpec effect = list_.effect(
+        {{"acts", acts_word(acts)}, {"axis", axis}, {"form", form}}, std::move(numbers));
     std::vector<Column> columns;
     if (form == "periodic") {
       constexpr double kTurn = 2 * std::numbers::pi;
-      columns = {{acts, [of](const Spot& s) { return std::cos(kTurn * of(s)); }, {}, 1},
-                 {acts, [of](const Spot& s) { return std::sin(kTurn * of(s)); }, {}, 1}};
+      columns = {{.basis = acts, .of = [of](const Spot& s) { return std::cos(kTurn * of(s)); }},
+                 {.basis = acts, .of = [of](const Spot& s) { return std::sin(kTurn * of(s)); }}};
     } else {
-      columns = {{acts, of, {}, 1}};
+      columns = {{.basis = acts, .of = of}};
     }
-    out_.push_back({"empirical", std::move(covariate), std::move(columns), along,
-                    [model = model_, effect](Coefficients c) {
-                      EffectSpec found = effect;
-                      if (c.size() == 2) {
-                        found.numbers["wave"] = {c[0], c[1]};
-                      } else {
-                        found.numbers["amount"] = {std::clamp(c[0], -4.9, 4.9)};
-                      }
-                      return with_effect(model, found);
-                    },
-                    model_.size()});
+    return list_.add_effect(std::move(covariate), std::move(columns), along,
+                            [effect](Coefficients c) {
+                              EffectSpec found = effect;
+                              if (c.size() == 2) {
+                                found.numbers["wave"] = {c[0], c[1]};
+                              } else {
+                                found.numbers["amount"] = {std::clamp(c[0], -4.9, 4.9)};
+                              }
+                              return found;
+                            });
   }
 
   void add_layers(Basis acts) {
-    const int count = job_.layers();
+    const int count = job_.layers;
     const double pitch = job_.grid.pitch_mm[2];
     constexpr double kShortestLayers = 2.2;
     for (const double f : frequencies(count, kShortestLayers)) {
-      add(acts, {"layer", "periodic", {{"period_layers", {1 / f}}}}, kAlongZ, {{"period", {1 / f}}},
-          "layer", "periodic", [f](const Spot& s) { return f * s.layer; });
+      add(acts, {Axis::kLayer, Form::kPeriodic, {{"period_layers", {1 / f}}}}, kAlongZ,
+          {{"period", {1 / f}}}, "layer", "periodic", [f](const Spot& s) { return f * s.layer; });
     }
     if (acts == Basis::kDose) {
       // Every second layer; as a shift this is the catalogue's parity.
-      add(acts, {"layer", "periodic", {{"period_layers", {2}}}}, kAlongZ, {{"period", {2}}},
-          "layer", "periodic", [](const Spot& s) { return s.layer / 2.0; });
-      out_.back().columns.pop_back();
-      out_.back().apply = [model = model_](Coefficients c) {
-        return with_effect(model, {"empirical",
-                                   {{"acts", "dose"}, {"axis", "layer"}, {"form", "periodic"}},
-                                   {{"period", {2}}, {"wave", {c[0], 0}}}});
+      Candidate& second =
+          add(acts, {Axis::kLayer, Form::kPeriodic, {{"period_layers", {2}}}}, kAlongZ,
+              {{"period", {2}}}, "layer", "periodic", [](const Spot& s) { return s.layer / 2.0; });
+      second.columns.pop_back();
+      const EffectSpec wave = list_.effect(
+          {{"acts", acts_word(acts)}, {"axis", "layer"}, {"form", "periodic"}}, {{"period", {2}}});
+      second.apply = [model = list_.model(), wave](Coefficients c) {
+        EffectSpec found = wave;
+        found.numbers["wave"] = {c[0], 0};
+        return with_effect(model, found);
       };
     }
     add_pulses(acts);
@@ -87,7 +89,7 @@ class Scan {
       // As a dose this is the catalogue's pause.
       for (int k = 2; k <= count - 2; ++k) {
         const double at = (job_.first_layer + k) * pitch;
-        add(acts, {"z", "step", {{"at_mm", {at}}}}, kAlongZ, {{"at", {at}}}, "z", "step",
+        add(acts, {Axis::kZ, Form::kStep, {{"at_mm", {at}}}}, kAlongZ, {{"at", {at}}}, "z", "step",
             [at](const Spot& s) { return s.z_mm >= at ? 1.0 : 0.0; });
       }
     }
@@ -95,7 +97,7 @@ class Scan {
       for (int k = 0; k + width <= count; k += std::max(1, width / 3)) {
         const double from = (job_.first_layer + k) * pitch;
         const double to = from + width * pitch;
-        add(acts, {"z", "window", {{"from_mm", {from}}, {"to_mm", {to}}}}, kAlongZ,
+        add(acts, {Axis::kZ, Form::kWindow, {{"from_mm", {from}}, {"to_mm", {to}}}}, kAlongZ,
             {{"from", {from}}, {"to", {to}}}, "z", "window",
             [from, to](const Spot& s) { return s.z_mm >= from && s.z_mm < to ? 1.0 : 0.0; });
       }
@@ -106,9 +108,10 @@ class Scan {
   void add_pulses(Basis acts) {
     constexpr int kMostLayers = 12;
     constexpr int kFewest = 3;  // twice could be two windows
-    for (int period = 3; period <= std::min(kMostLayers, job_.layers() / kFewest); ++period) {
+    for (int period = 3; period <= std::min(kMostLayers, job_.layers / kFewest); ++period) {
       for (int at = 0; at < period; ++at) {
-        add(acts, {"layer", "periodic", {{"period_layers", {static_cast<double>(period)}}}},
+        add(acts,
+            {Axis::kLayer, Form::kPeriodic, {{"period_layers", {static_cast<double>(period)}}}},
             kAlongZ,
             {{"period", {static_cast<double>(period)}},
              {"at", {static_cast<double>(at)}},
@@ -121,6 +124,7 @@ class Scan {
 
   void add_along(Basis acts, std::size_t axis) {
     const std::string name = axis == 0 ? "x" : "y";
+    const Axis covariate = axis == 0 ? Axis::kX : Axis::kY;
     const unsigned along = axis == 0 ? kAlongX : kAlongY;
     const auto place = [axis](const Spot& s) { return axis == 0 ? s.x_mm : s.y_mm; };
     const double origin = job_.place.origin_mm[axis];
@@ -129,20 +133,24 @@ class Scan {
       // As a dose this is the catalogue's band_swath.
       constexpr double kShortestMm = 0.9;
       for (const double f : frequencies(size, kShortestMm)) {
-        add(acts, {name, "periodic", {{"period_mm", {1 / f}}}}, along, {{"period", {1 / f}}}, name,
-            "periodic", [f, place](const Spot& s) { return f * place(s); });
+        add(acts, {covariate, Form::kPeriodic, {{"period_mm", {1 / f}}}}, along,
+            {{"period", {1 / f}}}, name, "periodic",
+            [f, place](const Spot& s) { return f * place(s); });
       }
       const double center = job_.place.center_mm(axis);
       const bool skew = (acts == Basis::kShiftX) != (axis == 0);
       if (skew) {
-        add(acts, {name, "trend", {}}, along, {{"from", {center}}}, name, "trend",
-            [center, place](const Spot& s) { return place(s) - center; });
-        out_.back().kind = "axis_calib";
+        // The axes are not square to each other: that has a name.
+        Candidate& askew =
+            add(acts, {covariate, Form::kTrend, {}}, along, {{"from", {center}}}, name, "trend",
+                [center, place](const Spot& s) { return place(s) - center; });
+        askew.kind = "axis_calib";
+        askew.named = true;
       }
     }
     constexpr double kStepMm = 0.2;
     for (double at = origin + kStepMm; at < origin + size; at += kStepMm) {
-      add(acts, {name, "step", {{"at_mm", {at}}}}, along, {{"at", {at}}}, name, "step",
+      add(acts, {covariate, Form::kStep, {{"at_mm", {at}}}}, along, {{"at", {at}}}, name, "step",
           [at, place](const Spot& s) { return place(s) >= at ? 1.0 : 0.0; });
     }
     // Narrow windows of the dose along y are the catalogue's jet_out.
@@ -150,7 +158,7 @@ class Scan {
       if (acts == Basis::kDose && axis == 1 && width < 2) continue;
       for (double from = origin; from + width <= origin + size; from += width / 4) {
         const double to = from + width;
-        add(acts, {name, "window", {{"from_mm", {from}}, {"to_mm", {to}}}}, along,
+        add(acts, {covariate, Form::kWindow, {{"from_mm", {from}}, {"to_mm", {to}}}}, along,
             {{"from", {from}}, {"to", {to}}}, name, "window", [from, to, place](const Spot& s) {
               return place(s) >= from && place(s) < to ? 1. : 0.;
             });
@@ -178,7 +186,9 @@ class Scan {
           continue;
         }
         add(Basis::kDose,
-            {"direction", "periodic", {{"direction_deg", {angle}}, {"period_mm", {1 / f}}}},
+            {Axis::kDirection,
+             Form::kPeriodic,
+             {{"direction_deg", {angle}}, {"period_mm", {1 / f}}}},
             kAlongX | kAlongY, {{"direction_deg", {angle}}, {"period", {1 / f}}}, "direction",
             "periodic", [fx, fy](const Spot& s) { return fx * s.x_mm + fy * s.y_mm; });
       }
@@ -195,7 +205,7 @@ class Scan {
           const double x = job_.place.origin_mm[0] + (i + 0.5) * job_.place.size_mm[0] / count(0);
           const double y = job_.place.origin_mm[1] + (j + 0.5) * job_.place.size_mm[1] / count(1);
           add(Basis::kDose,
-              {"position", "local", {{"centre_mm", {x, y}}, {"radius_mm", {2 * width}}}},
+              {Axis::kPosition, Form::kLocal, {{"centre_mm", {x, y}}, {"radius_mm", {2 * width}}}},
               kAlongX | kAlongY, {{"center_mm", {x, y}}, {"at", {0}}, {"width", {width}}},
               "position", "local", [x, y, width](const Spot& s) {
                 const double d2 = (s.x_mm - x) * (s.x_mm - x) + (s.y_mm - y) * (s.y_mm - y);
@@ -208,26 +218,24 @@ class Scan {
     const JobPlace& place = job_.place;
     const auto inward = [place](const Spot& s) { return edge_distance(place, s); };
     for (const double width : {0.5, 1.0, 2.0, 4.0}) {
-      add(Basis::kDose, {"edge_distance", "window", {{"from_mm", {0}}, {"to_mm", {2 * width}}}},
+      add(Basis::kDose,
+          {Axis::kEdgeDistance, Form::kWindow, {{"from_mm", {0}}, {"to_mm", {2 * width}}}},
           kAlongX | kAlongY, {{"at", {0}}, {"width", {width}}}, "edge_distance", "local",
           [inward, width](const Spot& s) {
             const double d = inward(s);
             return std::exp(-d * d / (2 * width * width));
           });
     }
-    add(Basis::kDose, {"edge_distance", "trend", {}}, kAlongX | kAlongY, {{"from", {0}}},
+    add(Basis::kDose, {Axis::kEdgeDistance, Form::kTrend, {}}, kAlongX | kAlongY, {{"from", {0}}},
         "edge_distance", "trend", inward);
   }
 
-  const MeasuredJob& job_;
-  const EffectList& model_;
-  std::vector<Candidate> out_;
+  CandidateList& list_;
+  const JobExtent& job_;
 };
 
 }  // namespace
 
-std::vector<Candidate> scan_candidates(const MeasuredJob& job, const EffectList& model) {
-  return Scan(job, model).take();
-}
+void add_empirical_candidates(CandidateList& list) { Scan(list).add_all(); }
 
 }  // namespace binderjet

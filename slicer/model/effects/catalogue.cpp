@@ -1,44 +1,54 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "slicer/model/effects/effect.h"
+#include "slicer/model/effects/catalogue.h"
 
 #include <fmt/format.h>
 
 #include <algorithm>
 
-#include "slicer/model/effects/band_swath.h"
-#include "slicer/model/effects/density.h"
-#include "slicer/model/effects/empirical.h"
-#include "slicer/model/effects/fill.h"
-#include "slicer/model/effects/first_drops.h"
-#include "slicer/model/effects/first_layers.h"
-#include "slicer/model/effects/grad_bed.h"
-#include "slicer/model/effects/grad_z.h"
-#include "slicer/model/effects/infiltrant.h"
-#include "slicer/model/effects/jet_out.h"
-#include "slicer/model/effects/jitter.h"
-#include "slicer/model/effects/layer_shift_low.h"
-#include "slicer/model/effects/parity.h"
-#include "slicer/model/effects/pause.h"
-#include "slicer/model/effects/recoat_compress.h"
-#include "slicer/model/effects/recoat_streak.h"
-#include "slicer/model/effects/registration_drift.h"
-#include "slicer/model/effects/rounding.h"
-#include "slicer/model/effects/scale_xyz.h"
-#include "slicer/model/effects/shift.h"
-#include "slicer/model/effects/slice_dropout.h"
-#include "slicer/model/effects/spread.h"
-#include "slicer/model/effects/survive.h"
-#include "slicer/model/effects/tail.h"
-#include "slicer/model/effects/threshold.h"
-#include "slicer/model/effects/z_bleed_down.h"
-#include "slicer/model/effects/z_wick_up.h"
+// One line for each effect, in the order in which messages list them: it declares the function that
+// KIND.cpp defines, and lists the kind.
+// clang-format off
+#define BINDERJET_EFFECTS(EFFECT) \
+  EFFECT(spread)                  \
+  EFFECT(threshold)               \
+  EFFECT(fill)                    \
+  EFFECT(survive)                 \
+  EFFECT(tail)                    \
+  EFFECT(rounding)                \
+  EFFECT(z_bleed_down)            \
+  EFFECT(z_wick_up)               \
+  EFFECT(density)                 \
+  EFFECT(shift)                   \
+  EFFECT(registration_drift)      \
+  EFFECT(layer_shift_low)         \
+  EFFECT(parity)                  \
+  EFFECT(jitter)                  \
+  EFFECT(scale_xyz)               \
+  EFFECT(grad_bed)                \
+  EFFECT(grad_z)                  \
+  EFFECT(pause)                   \
+  EFFECT(first_layers)            \
+  EFFECT(band_swath)              \
+  EFFECT(jet_out)                 \
+  EFFECT(recoat_streak)           \
+  EFFECT(first_drops)             \
+  EFFECT(slice_dropout)           \
+  EFFECT(recoat_compress)         \
+  EFFECT(infiltrant)              \
+  EFFECT(empirical)
+// clang-format on
 
 namespace binderjet {
+
+#define DECLARE(name) EffectKind name##_effect();
+BINDERJET_EFFECTS(DECLARE)
+#undef DECLARE
+
 namespace {
 
 std::string known_kinds() {
   std::vector<std::string> kinds;
-  for (const EffectKind& kind : effect_kinds()) kinds.push_back(kind.kind);
+  for (const EffectKind& kind : effect_kinds()) kinds.push_back(kind.name);
   return fmt::format("{}", fmt::join(kinds, ", "));
 }
 
@@ -82,43 +92,23 @@ SpecFault check_numbers(const NumberRule& rule, const EffectSpec& spec) {
 }  // namespace
 
 const std::vector<EffectKind>& effect_kinds() {
-  static const std::vector<EffectKind> kinds = {
-      spread_kind(),
-      threshold_kind(),
-      fill_kind(),
-      survive_kind(),
-      tail_kind(),
-      rounding_kind(),
-      z_bleed_down_kind(),
-      z_wick_up_kind(),
-      density_kind(),
-      shift_kind(),
-      registration_drift_kind(),
-      layer_shift_low_kind(),
-      parity_kind(),
-      jitter_kind(),
-      scale_xyz_kind(),
-      grad_bed_kind(),
-      grad_z_kind(),
-      pause_kind(),
-      first_layers_kind(),
-      band_swath_kind(),
-      jet_out_kind(),
-      recoat_streak_kind(),
-      first_drops_kind(),
-      slice_dropout_kind(),
-      recoat_compress_kind(),
-      infiltrant_kind(),
-      empirical_kind(),
-  };
+#define LIST(name) name##_effect(),
+  static const std::vector<EffectKind> kinds = {BINDERJET_EFFECTS(LIST)};
+#undef LIST
   return kinds;
 }
 
-const EffectKind* find_effect_kind(const std::string& kind) {
+const EffectKind* find_effect_kind(const std::string& name) {
   for (const EffectKind& known : effect_kinds()) {
-    if (known.kind == kind) return &known;
+    if (known.name == name) return &known;
   }
   return nullptr;
+}
+
+const std::string& nameless_word() {
+  return std::find_if(effect_kinds().begin(), effect_kinds().end(),
+                      [](const EffectKind& kind) { return kind.nameless; })
+      ->name;
 }
 
 SpecFault check_effect(const EffectSpec& spec) {
