@@ -55,7 +55,7 @@ class UsbBackend : public Backend {
   Result<std::string> header(const std::string& id) override;
 
  private:
-  Fault fault(FaultKind kind, std::string what) const { return {kind, text_, std::move(what)}; }
+  Failure fault(FailureKind kind, std::string what) const { return {kind, text_, std::move(what)}; }
   Result<std::unique_ptr<UsbJob>> connect(const UsbUri& uri, const std::string& text,
                                           UsbSession::Check check, UsbJob::Keep keep);
   Result<void> connect_for_job(const UsbUri& uri, const std::string& text);
@@ -63,7 +63,7 @@ class UsbBackend : public Backend {
   Result<void> make_way(std::uint64_t number);
   Result<std::string> cancelled_folder() const;
   // Holds the job, says where and why, and hands the fault on.
-  tl::unexpected<Fault> stopped(Fault fault);
+  tl::unexpected<Failure> stopped(Failure fault);
   void stop(const std::string& reason);
   void forget_cancelled();
 
@@ -81,10 +81,10 @@ Result<void> UsbBackend::check_wanted() {
   if (job_ && cancel_asked(store_, *job_)) {
     cancelled_ = true;
     return tl::unexpected(
-        fault(FaultKind::kInterrupted, fmt::format("job {} was cancelled", job_->id)));
+        fault(FailureKind::kInterrupted, fmt::format("job {} was cancelled", job_->id)));
   }
   if (options_.stop_asked && options_.stop_asked()) {
-    return tl::unexpected(fault(FaultKind::kInterrupted, "interrupted"));
+    return tl::unexpected(fault(FailureKind::kInterrupted, "interrupted"));
   }
   return {};
 }
@@ -138,7 +138,7 @@ void UsbBackend::forget_cancelled() {
   }
 }
 
-tl::unexpected<Fault> UsbBackend::stopped(Fault fault) {
+tl::unexpected<Failure> UsbBackend::stopped(Failure fault) {
   const int layer = there_ ? there_->acknowledged() : job_->next;
   fault.where = fmt::format("{}: layer {} of {}", fault.where.empty() ? text_ : fault.where, layer,
                             job_->layer_count());
@@ -170,16 +170,16 @@ Result<void> UsbBackend::make_way(std::uint64_t number) {
       const auto journal = Journal::peek(store_.held(job.id) + "/journal");
       if (!journal || journal->key != number) continue;
       return tl::unexpected(
-          fault(FaultKind::kDevice,
+          fault(FailureKind::kDevice,
                 fmt::format("the printer holds the unfinished job {0}: binderjet resume {0} --to "
                             "{1}, or binderjet cancel {0} --to {1}",
                             job.id, text_)));
     }
   }
   return tl::unexpected(
-      fault(FaultKind::kDevice, fmt::format("the printer holds an unfinished job from elsewhere; "
-                                            "binderjet cancel {:016x} --to {} makes it forget it",
-                                            number, text_)));
+      fault(FailureKind::kDevice, fmt::format("the printer holds an unfinished job from elsewhere; "
+                                              "binderjet cancel {:016x} --to {} makes it forget it",
+                                              number, text_)));
 }
 
 Result<std::string> UsbBackend::start(const JobTicket& ticket) {
@@ -189,7 +189,7 @@ Result<std::string> UsbBackend::start(const JobTicket& ticket) {
   std::uint64_t number = 0;
   while (number == 0) {
     if (getrandom(&number, sizeof number, 0) != sizeof number) {
-      return tl::unexpected(fault(FaultKind::kDevice, "the system gives no random numbers"));
+      return tl::unexpected(fault(FailureKind::kDevice, "the system gives no random numbers"));
     }
   }
   {
@@ -206,7 +206,7 @@ Result<std::string> UsbBackend::start(const JobTicket& ticket) {
     started = make_way(there_->in_the_way());
     if (started) started = there_->start(number, ticket.layer_count, ticket.header);
     if (!started) {
-      const Fault why = started.error();
+      const Failure why = started.error();
       const Result<File> lock = store_.lock();
       job_.reset();
       there_.reset();
@@ -240,7 +240,7 @@ Result<int> UsbBackend::resume(const std::string& id, const JobTicket& ticket) {
 }
 
 Result<int> UsbBackend::send(int layer, std::span<const std::byte> records) {
-  if (!job_) return tl::unexpected(fault(FaultKind::kBadInput, "no job was started"));
+  if (!job_) return tl::unexpected(fault(FailureKind::kBadInput, "no job was started"));
   if (auto due = check_next(*job_, layer, text_); !due) return stopped(due.error());
   if (auto wanted = check_wanted(); !wanted) return stopped(wanted.error());
   ++job_->next;
@@ -249,7 +249,7 @@ Result<int> UsbBackend::send(int layer, std::span<const std::byte> records) {
 }
 
 Result<void> UsbBackend::end() {
-  if (!job_) return tl::unexpected(fault(FaultKind::kBadInput, "no job was started"));
+  if (!job_) return tl::unexpected(fault(FailureKind::kBadInput, "no job was started"));
   if (auto whole = check_all_came(*job_, text_); !whole) return stopped(whole.error());
   if (auto done = there_->end(); !done) return stopped(done.error());
   there_.reset();
@@ -306,7 +306,7 @@ Result<void> UsbBackend::cancel(const std::string& id) {
   if (heard) {
     unlink(fmt::format("{}/cancelled/{:016x}", store_.folder(), number).c_str());
   } else if (id.size() == 16) {
-    return tl::unexpected(fault(FaultKind::kDevice, "the printer could not be told"));
+    return tl::unexpected(fault(FailureKind::kDevice, "the printer could not be told"));
   }
   return {};
 }
