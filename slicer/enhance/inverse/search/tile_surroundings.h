@@ -13,7 +13,7 @@
 namespace binderjet {
 
 // A voxel of a stressed feature counts this much, in its slice and under the nominal model, and one
-// that shall stay barren under all models: more than all that a pixel reaches, so that no other
+// that must stay powder under all models: more than all that a pixel reaches, so that no other
 // gain makes up for it.
 constexpr int kStress = 1000;
 
