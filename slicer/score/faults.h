@@ -29,8 +29,8 @@
 namespace binderjet {
 
 enum class FaultKind { kLost, kFused, kSpurious, kLoose, kJoined };
-constexpr std::array kFaultKinds{FaultKind::kLost, FaultKind::kFused, FaultKind::kSpurious,
-                                 FaultKind::kLoose, FaultKind::kJoined};
+inline constexpr std::array kFaultKinds{FaultKind::kLost, FaultKind::kFused, FaultKind::kSpurious,
+                                        FaultKind::kLoose, FaultKind::kJoined};
 std::string_view word(FaultKind kind);
 
 // The region is what is lost, fused, spurious or loose, or the bridge that joins two parts; in
@@ -50,8 +50,8 @@ class FaultCounts {
   std::array<std::int64_t, kFaultKinds.size()> counts_{};
 };
 
-// What is looked at, and for what. Loose and joined cost the most, for each run of each slice keeps
-// a number until the end: a search that does not ask for them is several times faster.
+// What is looked at, and for what. Loose and joined cost the most, for what a part and a piece hold
+// is kept until the end: a search asks for the kinds that it can mend.
 struct FaultScope {
   int first_layer = 0;  // the layer that is added first, in the job
   std::set<FaultKind> kinds{kFaultKinds.begin(), kFaultKinds.end()};

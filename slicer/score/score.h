@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The whole score of a print, streamed: voxels, edges and faults. Layers are kept for as long as
-// their neighbors need them; of the parts and pieces, a number for each run is.
+// The whole score of a print, streamed: voxels, edges and faults. A layer is kept for as long as its
+// neighbors need it, and until the end only what each part and piece holds.
 #pragma once
 
 #include <memory>
