@@ -9,15 +9,15 @@
 
 namespace binderjet {
 
-inline ErrorKind error_kind(FaultKind kind) {
+inline ErrorKind error_kind(FailureKind kind) {
   switch (kind) {
-    case FaultKind::kBadInput:
+    case FailureKind::kBadInput:
       return ErrorKind::kBadInput;
-    case FaultKind::kNoRoom:
+    case FailureKind::kNoRoom:
       return ErrorKind::kNoRoom;
-    case FaultKind::kInterrupted:
+    case FailureKind::kInterrupted:
       return ErrorKind::kInterrupted;
-    case FaultKind::kDevice:
+    case FailureKind::kDevice:
       break;
   }
   return ErrorKind::kDevice;
@@ -27,7 +27,7 @@ inline ErrorKind error_kind(FaultKind kind) {
 template <class T>
 T value_or_throw(Result<T> result) {
   if (!result) {
-    const Fault& fault = result.error();
+    const Failure& fault = result.error();
     throw Error(error_kind(fault.kind), fault.where, fault.what);
   }
   if constexpr (!std::is_void_v<T>) return std::move(*result);

@@ -1,46 +1,31 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "driver/report/located_faults.h"
 
-#include <algorithm>
 #include <cmath>
-#include <string_view>
+#include <nlohmann/json.hpp>
 #include <tuple>
-#include <utility>
 
 namespace binderjet {
 namespace {
 
-bool larger(const Found& a, const Found& b) {
-  const auto key = [](const Found& f) {
-    return std::tuple(-f.region.voxels, f.region.low[2], f.region.low[1], f.region.low[0],
-                      std::string_view(f.kind));
-  };
-  return key(a) < key(b);
+auto key(const Region& region) {
+  return std::tuple(-region.voxels, region.low[2], region.low[1], region.low[0]);
 }
 
-// To a tenth of a micrometre; more digits would be noise.
+// To a tenth of a micrometer; more digits would be noise.
 double rounded(double mm) { return std::round(mm * 1e4) / 1e4; }
 
 }  // namespace
 
-void FoundRegions::add(Found found) {
-  found_.push_back(std::move(found));
-  if (found_.size() <= 2 * kMostListed) return;
-  std::nth_element(found_.begin(), found_.begin() + kMostListed, found_.end(), larger);
-  found_.resize(kMostListed);
+bool larger(const Region& a, const Region& b) { return key(a) < key(b); }
+
+bool larger(const Fault& a, const Fault& b) {
+  return std::tuple(key(a.region), word(a.kind)) < std::tuple(key(b.region), word(b.kind));
 }
 
-std::vector<Found> FoundRegions::largest(std::size_t most) const {
-  std::vector<Found> sorted = found_;
-  std::sort(sorted.begin(), sorted.end(), larger);
-  if (sorted.size() > most) sorted.resize(most);
-  return sorted;
-}
-
-nlohmann::ordered_json to_json(const Found& found, const std::array<double, 3>& origin_mm,
-                               const Grid& grid) {
+nlohmann::ordered_json located(std::string_view kind, const Region& region,
+                               const std::array<double, 3>& origin_mm, const Grid& grid) {
   using Json = nlohmann::ordered_json;
-  const Region& region = found.region;
   Json at = Json::array();
   Json size = Json::array();
   double voxel_mm3 = 1;
@@ -52,10 +37,12 @@ nlohmann::ordered_json to_json(const Found& found, const std::array<double, 3>& 
     voxel_mm3 *= voxel_mm;
   }
   const int rz = grid.detail_vx[2];
-  return {
-      {"kind", found.kind},      {"at_mm", at},
-      {"size_mm", size},         {"layers", {region.low[2] / rz, (region.high[2] + rz - 1) / rz}},
-      {"voxels", region.voxels}, {"volume_mm3", static_cast<double>(region.voxels) * voxel_mm3}};
+  return {{"kind", kind},
+          {"at_mm", at},
+          {"size_mm", size},
+          {"layers", {region.low[2] / rz, (region.high[2] + rz - 1) / rz}},
+          {"voxels", region.voxels},
+          {"volume_mm3", static_cast<double>(region.voxels) * voxel_mm3}};
 }
 
 }  // namespace binderjet

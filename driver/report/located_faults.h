@@ -1,36 +1,54 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What was found wrong with a print, where: a list that stays bounded, the largest first.
+// The faults of a print and where on the bed they are: a list that stays bounded, the largest
+// first.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cstddef>
-#include <nlohmann/json.hpp>
-#include <string>
+#include <nlohmann/json_fwd.hpp>
+#include <string_view>
 #include <vector>
 
 #include "slicer/layers/grid.h"
 #include "slicer/layers/regions.h"
+#include "slicer/score/faults.h"
 
 namespace binderjet {
 
-struct Found {
-  std::string kind;  // lost, fused, spurious, separated, touching, trapped
-  Region region;     // in voxels and slices
-};
+// By voxels, then by place, then by the kind's word: an order that does not depend on the order in
+// which they were found.
+bool larger(const Region& a, const Region& b);
+bool larger(const Fault& a, const Fault& b);
 
-class FoundRegions {
+// Faults, or regions that are none, such as pockets of trapped powder.
+template <class T>
+class LargestOf {
  public:
-  void add(Found found);
+  void add(const T& found) {
+    found_.push_back(found);
+    if (found_.size() <= 2 * kMostListed) return;
+    std::nth_element(found_.begin(), found_.begin() + kMostListed, found_.end(), is_larger);
+    found_.resize(kMostListed);
+  }
   // At most `most`, the largest.
-  std::vector<Found> largest(std::size_t most = kMostListed) const;
+  std::vector<T> largest(std::size_t most = kMostListed) const {
+    std::vector<T> sorted = found_;
+    std::sort(sorted.begin(), sorted.end(), is_larger);
+    if (sorted.size() > most) sorted.resize(most);
+    return sorted;
+  }
 
  private:
   static constexpr std::size_t kMostListed = 10000;
-  std::vector<Found> found_;
+  static bool is_larger(const T& a, const T& b) { return larger(a, b); }
+
+  std::vector<T> found_;
 };
 
-// Where on the bed (its middle), how large, in which layers; `origin_mm` is voxel 0, 0 of slice 0.
-nlohmann::ordered_json to_json(const Found& found, const std::array<double, 3>& origin_mm,
-                               const Grid& grid);
+// What it is called, where on the bed (its middle), how large, in which layers; `origin_mm` is
+// voxel 0, 0 of slice 0.
+nlohmann::ordered_json located(std::string_view kind, const Region& region,
+                               const std::array<double, 3>& origin_mm, const Grid& grid);
 
 }  // namespace binderjet

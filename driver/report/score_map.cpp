@@ -56,8 +56,8 @@ void ScoreMap::write(int index, const LayerScore& layer) const {
       paint(row, y, kMissing);
       rows::subtract(printed, target, row);
       paint(row, y, kExtra);
-      paint(layer.features.lost[s].row(y), y, kLost);
-      paint(layer.features.fused[s].row(y), y, kFused);
+      paint(layer.missing.lost[s].row(y), y, kLost);
+      paint(layer.missing.fused[s].row(y), y, kFused);
     }
   }
   stack_.write_file(stack_.image_name(index),
@@ -65,21 +65,27 @@ void ScoreMap::write(int index, const LayerScore& layer) const {
                                        {stack_.info().pitch_mm[0], stack_.info().pitch_mm[1]}));
 }
 
-void ScoreMap::add(const std::vector<Feature>& features) {
-  for (const Feature& feature : features) found_.add({word(feature.kind), feature.region});
+void ScoreMap::add(const std::vector<Fault>& faults) {
+  for (const Fault& fault : faults) {
+    if (fault.kind != FaultKind::kLoose && fault.kind != FaultKind::kJoined) found_.add(fault);
+  }
 }
 
-void ScoreMap::finish(const Score& score) {
-  const std::vector<Found> listed = found_.largest();
-  const Json head = {{"format", "features"},         {"version", 1},
-                     {"lost", score.lost()},         {"fused", score.fused()},
-                     {"spurious", score.spurious()}, {"listed", listed.size()}};
-  // One feature a line, for people and for grep.
+void ScoreMap::finish(const JobScore& score) {
+  const std::vector<Fault> listed = found_.largest();
+  const Json head = {{"format", "features"},
+                     {"version", 1},
+                     {"lost", score.faults[FaultKind::kLost]},
+                     {"fused", score.faults[FaultKind::kFused]},
+                     {"spurious", score.faults[FaultKind::kSpurious]},
+                     {"listed", listed.size()}};
+  // One fault a line, for people and for grep.
   std::string text = head.dump();
   text.back() = ',';
   text += "\n\"features\": [";
   for (std::size_t i = 0; i < listed.size(); ++i) {
-    text += (i == 0 ? "\n" : ",\n") + to_json(listed[i], origin_mm_, grid_).dump();
+    const auto& [kind, region] = listed[i];
+    text += (i == 0 ? "\n" : ",\n") + located(word(kind), region, origin_mm_, grid_).dump();
   }
   text += "\n]}\n";
   stack_.write_file("features.json", std::as_bytes(std::span(text)));

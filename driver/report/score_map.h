@@ -22,16 +22,16 @@ class ScoreMap {
 
   // Threads may write different layers at once; index 0 is the job's first layer.
   void write(int index, const LayerScore& layer) const;
-  // Remembers the largest features, so that the list stays bounded.
-  void add(const std::vector<Feature>& features);
+  // Remembers the largest of those that a layer's picture can show: lost, fused and spurious.
+  void add(const std::vector<Fault>& faults);
   // Writes the list and gives the folder its name.
-  void finish(const Score& score);
+  void finish(const JobScore& score);
 
  private:
   std::array<double, 3> origin_mm_;  // of voxel 0, 0 of slice 0 on the bed
   Grid grid_;
   StackWriter stack_;
-  FoundRegions found_;
+  LargestOf<Fault> found_;
 };
 
 }  // namespace binderjet

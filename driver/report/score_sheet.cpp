@@ -51,7 +51,9 @@ ScoreSheet score_masks(const MaskSource& masks, const JobHeader& header,
                        const std::shared_ptr<const Mesh>& target,
                        const std::vector<PrinterModel>& models, const std::string& label,
                        const Console& console, const ScoreListener& listener) {
-  ScoreSheet sheet{Score(header.grid, masks.first), 0, 0, regions_of(masks)};
+  ScoreSheet sheet;
+  sheet.masks = regions_of(masks);
+  Scorer scorer(header.grid, masks.first);
   const auto layers =
       score_layers(voxelize(target, header.grid, header.box, masks.layers()),
                    printed_stream(masks, models.front()), header.grid, masks.layers());
@@ -59,19 +61,19 @@ ScoreSheet score_masks(const MaskSource& masks, const JobHeader& header,
   int done = 0;
   while (layers->rest().size() > 0) {
     const auto block = layers->next(kBlockLayers);
-    std::vector<Feature> ended;
+    std::vector<Fault> ended;
     for (const Shared<LayerScore>& layer : block) {
-      const std::vector<Feature> here = sheet.score.add(*layer);
+      const std::vector<Fault> here = scorer.add(*layer);
       ended.insert(ended.end(), here.begin(), here.end());
     }
     if (listener) listener(block, ended);
     done += static_cast<int>(block.size());
     progress.advance(done);
   }
-  const std::vector<Feature> ended = sheet.score.finish();
-  if (listener) listener({}, ended);
+  sheet.score = scorer.finish();
+  if (listener) listener({}, sheet.score.last_faults);
 
-  sheet.window_worst = sheet.score.voxels().excess();
+  sheet.window_worst = sheet.score.voxels.excess();
   double sum = sheet.window_worst;
   for (std::size_t m = 1; m < models.size(); ++m) {
     const double corner = excess(masks, header, target, models[m]);
@@ -102,21 +104,19 @@ MaskSource enhanced_masks(const MaskSource& job, JobHeader header,
 }
 
 nlohmann::ordered_json to_json(const ScoreSheet& sheet) {
-  const VoxelCounts& counts = sheet.score.voxels();
-  const EdgeErrors& edges = sheet.score.edges();
-  return {{"solid_voxels", counts.solid},
-          {"wrong", counts.wrong()},
-          {"floor", counts.floor()},
-          {"excess", counts.excess()},
-          {"window_excess", {{"mean", sheet.window_mean}, {"worst", sheet.window_worst}}},
-          {"epe_mm", {{"mean", edges.mean_mm()}, {"p95", edges.p95_mm()}, {"max", edges.max_mm()}}},
-          {"lost", sheet.score.lost()},
-          {"fused", sheet.score.fused()},
-          {"spurious", sheet.score.spurious()},
-          {"separated", sheet.score.separated()},
-          {"mask",
-           {{"least_island_px", to_json(sheet.masks.least_island_px)},
-            {"least_hole_px", to_json(sheet.masks.least_hole_px)}}}};
+  const VoxelCounts& counts = sheet.score.voxels;
+  const EdgeErrors& edges = sheet.score.edges;
+  nlohmann::ordered_json json = {
+      {"solid_voxels", counts.solid},
+      {"wrong", counts.wrong()},
+      {"floor", counts.floor()},
+      {"excess", counts.excess()},
+      {"window_excess", {{"mean", sheet.window_mean}, {"worst", sheet.window_worst}}},
+      {"epe_mm", {{"mean", edges.mean_mm()}, {"p95", edges.p95_mm()}, {"max", edges.max_mm()}}}};
+  for (const FaultKind kind : kFaultKinds) json[std::string(word(kind))] = sheet.score.faults[kind];
+  json["mask"] = {{"least_island_px", to_json(sheet.masks.least_island_px)},
+                  {"least_hole_px", to_json(sheet.masks.least_hole_px)}};
+  return json;
 }
 
 }  // namespace binderjet

@@ -5,7 +5,7 @@
 
 #include <functional>
 #include <memory>
-#include <nlohmann/json.hpp>
+#include <nlohmann/json_fwd.hpp>
 #include <string>
 #include <vector>
 
@@ -19,16 +19,16 @@
 namespace binderjet {
 
 struct ScoreSheet {
-  Score score;
+  JobScore score;
   double window_mean = 0;  // excess, over the model and the corners of its window
   double window_worst = 0;
   MaskRegions masks;
 };
 
-// Hears of the layers from the first on, a block at a time, with the features that end there; then
-// of nothing but the features that reach to the end.
+// Hears of the layers from the first on, a block at a time, with the faults that end there; then of
+// nothing but the faults of which only the end tells.
 using ScoreListener =
-    std::function<void(const std::vector<Shared<LayerScore>>&, const std::vector<Feature>&)>;
+    std::function<void(const std::vector<Shared<LayerScore>>&, const std::vector<Fault>&)>;
 
 // `models` is process_window(): the first is the printer's own. The target is the job's.
 ScoreSheet score_masks(const MaskSource& masks, const JobHeader& header,

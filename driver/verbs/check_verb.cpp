@@ -8,6 +8,7 @@
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <string>
+#include <string_view>
 #include <utility>
 #include <vector>
 
@@ -29,29 +30,44 @@ using Json = nlohmann::ordered_json;
 constexpr std::size_t kMostNamed = 100;  // with --json
 constexpr std::size_t kMostTold = 8;     // to a person, of each kind
 
-// What is found, and how to say it.
-struct Kind {
-  const char* word;
+// How to say what is found.
+struct Saying {
+  std::string_view word;
   const char* one;
   const char* many;
   const char* meaning;
 };
-constexpr Kind kKinds[] = {
-    {"lost", "feature vanishes", "features vanish", "too thin to come out of the powder"},
-    {"fused", "gap closes", "gaps close", "too narrow to stay open"},
-    {"spurious", "loose crumb", "loose crumbs", "printed where the part has nothing"},
-    {"separated", "piece comes off", "pieces come off", "nothing printed holds them to their part"},
-    {"touching", "joint between parts", "joints between parts", "printed where they are apart"},
-    {"trapped", "pocket traps powder", "pockets trap powder", "no way out for the powder in it"},
-};
 
-struct Findings {
-  std::map<std::string, std::int64_t> counts;
-  std::map<std::string, FoundRegions> regions;
+Saying saying(FaultKind kind) {
+  switch (kind) {
+    case FaultKind::kLost:
+      return {word(kind), "feature lost", "features lost", "too thin to come out of the powder"};
+    case FaultKind::kFused:
+      return {word(kind), "gap fused", "gaps fused", "too narrow to stay open"};
+    case FaultKind::kSpurious:
+      return {word(kind), "spurious crumb", "spurious crumbs",
+              "printed where the part has nothing"};
+    case FaultKind::kLoose:
+      return {word(kind), "loose piece", "loose pieces",
+              "nothing printed holds them to their part"};
+    case FaultKind::kJoined:
+      break;
+  }
+  return {word(kind), "bridge joins parts", "bridges join parts", "printed where they are apart"};
+}
 
-  void add(const std::string& kind, const Region& region) {
-    ++counts[kind];
-    regions[kind].add({kind, region});
+// No fault of the masks: it is printed as it was wanted.
+constexpr Saying kTrapped{"trapped", "pocket traps powder", "pockets trap powder",
+                          "no way out for the powder in it"};
+
+// All of a kind: how many, and where the largest are.
+struct Kind {
+  std::int64_t count = 0;
+  LargestOf<Region> regions;
+
+  void add(const Region& region) {
+    ++count;
+    regions.add(region);
   }
 };
 
@@ -76,7 +92,8 @@ std::unique_ptr<Stream<RunLayer>> prints_of(const SlicePlan& plan,
 }
 
 struct Checked {
-  Findings findings;
+  std::map<FaultKind, Kind> faults;
+  Kind trapped;
   Totals totals;
   double excess = 0;
 };
@@ -90,30 +107,27 @@ Checked check_plan(const SlicePlan& plan, const Console& console) {
   const auto layers = score_layers(voxelize(plan.mesh, header.grid, header.box, all),
                                    prints_of(plan, model, mask_px), header.grid, all);
   Checked checked;
-  Score score(header.grid, 0);
+  Scorer scorer(header.grid, 0);
   TrappedPowder powder;
-  const auto take = [&](const std::vector<Feature>& features) {
-    for (const Feature& feature : features) {
-      checked.findings.add(word(feature.kind), feature.region);
-    }
+  const auto take = [&](const std::vector<Fault>& faults) {
+    for (const Fault& fault : faults) checked.faults[fault.kind].add(fault.region);
   };
   Progress progress(console, "checking", header.layers());
   while (layers->rest().size() > 0) {
     for (const Shared<LayerScore>& layer : layers->next(kBlockLayers)) {
-      take(score.add(*layer));
+      take(scorer.add(*layer));
       for (const Region& pocket : powder.add(*layer->layer.printed)) {
-        checked.findings.add("trapped", in_slices(pocket, header.grid.detail_vx[2]));
+        checked.trapped.add(in_slices(pocket, header.grid.detail_vx[2]));
       }
       ++checked.totals.layers;
     }
     progress.advance(checked.totals.layers);
   }
-  take(score.finish());
-  for (const Region& piece : score.loose_pieces()) checked.findings.add("separated", piece);
-  for (const Region& joint : score.joints()) checked.findings.add("touching", joint);
-  checked.excess = score.voxels().excess();
+  const JobScore score = scorer.finish();
+  take(score.last_faults);
+  checked.excess = score.voxels.excess();
   checked.totals.mask_px = *mask_px;
-  checked.totals.target_vx = score.voxels().solid;
+  checked.totals.target_vx = score.voxels.solid;
   return checked;
 }
 
@@ -125,34 +139,55 @@ std::string place_text(const Json& found) {
                      found["layers"][0].get<int>(), found["layers"][1].get<int>() - 1);
 }
 
+enum class Verdict { kAsItIs, kLosesDetail, kDoubtfulSize, kNothingToPrint };
+
+const char* word(Verdict verdict) {
+  switch (verdict) {
+    case Verdict::kAsItIs:
+      return "prints as it is";
+    case Verdict::kLosesDetail:
+      return "loses detail";
+    case Verdict::kDoubtfulSize:
+      return "doubtful size";
+    case Verdict::kNothingToPrint:
+      break;
+  }
+  return "nothing to print";
+}
+
+Verdict verdict_on(const Checked& checked, bool doubtful_size) {
+  if (checked.totals.target_vx == 0) return Verdict::kNothingToPrint;
+  if (doubtful_size) return Verdict::kDoubtfulSize;
+  const bool sound = checked.faults.empty() && checked.trapped.count == 0;
+  return sound ? Verdict::kAsItIs : Verdict::kLosesDetail;
+}
+
 void check(const SliceOptions& options, const Console& console) {
   const SlicePlan plan = plan_slices(options, console);
   const JobHeader& header = plan.header;
-  const Checked checked = check_plan(plan, console);
+  Checked checked = check_plan(plan, console);
+  const std::string verdict = word(verdict_on(checked, plan.doubtful_size));
   const std::array<double, 3> origin_mm = {header.box.bed_px[0] * header.grid.pitch_mm[0],
                                            header.box.bed_px[1] * header.grid.pitch_mm[1], 0};
 
-  Json json = {{"verdict", "prints as it is"}};
+  Json json = {{"verdict", verdict}};
   Json all = Json::array();
   std::string text;
-  for (const Kind& kind : kKinds) {
-    const auto counted = checked.findings.counts.find(kind.word);
-    const std::int64_t count = counted == checked.findings.counts.end() ? 0 : counted->second;
-    json[kind.word] = count;
-    if (count == 0) continue;
-    json["verdict"] = "loses detail";
-    text += fmt::format("{} {} ({}):\n", count, count == 1 ? kind.one : kind.many, kind.meaning);
+  const auto tell = [&](const Saying& say, const Kind& kind) {
+    json[std::string(say.word)] = kind.count;
+    if (kind.count == 0) return;
+    text +=
+        fmt::format("{} {} ({}):\n", kind.count, kind.count == 1 ? say.one : say.many, say.meaning);
     std::size_t told = 0;
-    for (const Found& found : checked.findings.regions.at(kind.word).largest(kMostNamed)) {
-      all.push_back(to_json(found, origin_mm, header.grid));
+    for (const Region& region : kind.regions.largest(kMostNamed)) {
+      all.push_back(located(say.word, region, origin_mm, header.grid));
       if (told++ < kMostTold) text += place_text(all.back()) + "\n";
     }
-    if (count > static_cast<std::int64_t>(kMostTold)) {
-      text += fmt::format("  and {} smaller ones\n", count - static_cast<std::int64_t>(kMostTold));
-    }
-  }
-  if (plan.doubtful_size) json["verdict"] = "doubtful size";
-  if (checked.totals.target_vx == 0) json["verdict"] = "nothing to print";
+    const std::int64_t untold = kind.count - static_cast<std::int64_t>(kMostTold);
+    if (untold > 0) text += fmt::format("  and {} smaller ones\n", untold);
+  };
+  for (const FaultKind kind : kFaultKinds) tell(saying(kind), checked.faults[kind]);
+  tell(kTrapped, checked.trapped);
   json["found"] = std::move(all);
   json["excess"] = checked.excess;
   const Estimate estimate = estimate_of(header, checked.totals);
@@ -163,7 +198,7 @@ void check(const SliceOptions& options, const Console& console) {
   text += fmt::format("{:.2f} % of the part's voxels will be wrong beyond the layers' height\n",
                       100 * checked.excess);
   text += text_of(estimate, header);
-  text += fmt::format("\nverdict: {}", json["verdict"].get<std::string>());
+  text += fmt::format("\nverdict: {}", verdict);
   console.result(json, text);
 }
 

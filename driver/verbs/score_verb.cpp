@@ -46,24 +46,27 @@ std::shared_ptr<const Mesh> load_target(const ScoreOptions& options, const JobHe
 }
 
 std::string text_of(const ScoreSheet& sheet) {
-  const VoxelCounts& counts = sheet.score.voxels();
-  const EdgeErrors& edges = sheet.score.edges();
+  const VoxelCounts& counts = sheet.score.voxels;
+  const EdgeErrors& edges = sheet.score.edges;
+  const FaultCounts& faults = sheet.score.faults;
   return fmt::format(
       "wrong {:.4f} of {} solid voxels, {:.4f} of it unavoidable at this layer height, "
       "excess {:.4f}\nif the printer is a little off: excess {:.4f} on average, at worst {:.4f}\n"
       "edges off by {:.3f} mm on average, 95 % by less than {:.3f} mm, "
-      "at most {:.3f} mm\nfeatures: {} lost, {} fused, {} spurious; "
-      "{} parts come out in several pieces",
+      "at most {:.3f} mm\nfaults: {} lost, {} fused, {} spurious, {} loose, "
+      "{} joined",
       counts.wrong(), counts.solid, counts.floor(), counts.excess(), sheet.window_mean,
-      sheet.window_worst, edges.mean_mm(), edges.p95_mm(), edges.max_mm(), sheet.score.lost(),
-      sheet.score.fused(), sheet.score.spurious(), sheet.score.separated());
+      sheet.window_worst, edges.mean_mm(), edges.p95_mm(), edges.max_mm(), faults[FaultKind::kLost],
+      faults[FaultKind::kFused], faults[FaultKind::kSpurious], faults[FaultKind::kLoose],
+      faults[FaultKind::kJoined]);
 }
 
 std::string table_row(const std::string& enhance, const ScoreSheet& sheet) {
-  return fmt::format("\n{:8} {:7.4f} {:7.4f} {:7.4f} {:8.3f} {:5} {:5} {:8} {:9}", enhance,
-                     sheet.score.voxels().excess(), sheet.window_mean, sheet.window_worst,
-                     sheet.score.edges().mean_mm(), sheet.score.lost(), sheet.score.fused(),
-                     sheet.score.spurious(), sheet.score.separated());
+  std::string row =
+      fmt::format("\n{:8} {:7.4f} {:7.4f} {:7.4f} {:8.3f}", enhance, sheet.score.voxels.excess(),
+                  sheet.window_mean, sheet.window_worst, sheet.score.edges.mean_mm());
+  for (const FaultKind kind : kFaultKinds) row += fmt::format(" {:>8}", sheet.score.faults[kind]);
+  return row;
 }
 
 void score(const ScoreOptions& options, const Console& console) {
@@ -78,7 +81,7 @@ void score(const ScoreOptions& options, const Console& console) {
   if (!options.map.empty()) map.emplace(options.map, job, header.grid);
   int done = 0;
   const auto draw = [&](const std::vector<Shared<LayerScore>>& layers,
-                        const std::vector<Feature>& ended) {
+                        const std::vector<Fault>& ended) {
     if (!map) return;
     oneapi::tbb::parallel_for(0, static_cast<int>(layers.size()), [&](int i) {
       map->write(done + i, *layers[static_cast<std::size_t>(i)]);
@@ -92,7 +95,8 @@ void score(const ScoreOptions& options, const Console& console) {
   nlohmann::ordered_json json = to_json(own);
   std::string text = text_of(own);
   if (options.compare) {
-    text += "\n\nmasks     excess    mean   worst  edge mm  lost fused spurious separated";
+    text += "\n\nmasks     excess    mean   worst  edge mm";
+    for (const FaultKind kind : kFaultKinds) text += fmt::format(" {:>8}", word(kind));
     JobHeader other = header;
     other.profile = profile;
     for (const std::string enhance : {"none", "paper", "inverse"}) {

@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "slicer/coupon/coupon.h"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <array>
 #include <bit>
@@ -11,7 +9,6 @@
 #include <cstring>
 #include <numbers>
 
-#include "slicer/base/error.h"
 #include "slicer/base/whole_file.h"
 #include "slicer/coupon/coupon_shapes.h"
 
@@ -131,18 +128,45 @@ void put(std::vector<std::byte>& out, Value value) {
 
 }  // namespace
 
-const std::vector<std::string>& coupon_kinds() {
-  static const std::vector<std::string> kinds = {"slots", "walls", "full", "golfball"};
-  return kinds;
+const char* word(CouponKind kind) {
+  switch (kind) {
+    case CouponKind::kSlots:
+      return "slots";
+    case CouponKind::kWalls:
+      return "walls";
+    case CouponKind::kFull:
+      return "full";
+    case CouponKind::kGolfBall:
+      break;
+  }
+  return "golfball";
 }
 
-Mesh coupon(const std::string& kind) {
-  if (kind == "slots") return slots();
-  if (kind == "walls") return walls();
-  if (kind == "full") return full_coupon();
-  if (kind == "golfball") return golf_ball();
-  throw Error(ErrorKind::kUsage, "--kind",
-              fmt::format("\"{}\" is not one of {}", kind, fmt::join(coupon_kinds(), ", ")));
+std::vector<std::string> coupon_kinds() {
+  std::vector<std::string> words;
+  for (const CouponKind kind : kCouponKinds) words.emplace_back(word(kind));
+  return words;
+}
+
+std::optional<CouponKind> coupon_kind(const std::string& text) {
+  for (const CouponKind kind : kCouponKinds) {
+    if (text == word(kind)) return kind;
+  }
+  return std::nullopt;
+}
+
+Mesh coupon(CouponKind kind) {
+  switch (kind) {
+    case CouponKind::kSlots:
+      return slots();
+    case CouponKind::kWalls:
+      return walls();
+    case CouponKind::kFull:
+      return full_coupon();
+    case CouponKind::kGolfBall:
+      break;
+  }
+  return golf_ball();
 }
 
 void write_stl(const Mesh& mesh, const std::string& path) {

@@ -77,7 +77,7 @@ LayerBlock mend_block(const SearchModel& by, std::span<const Shared<LayerBlock>>
   return mended(by, std::move(layers), own, job_layers);
 }
 
-// `layers` as mend_ranges() wants them and as much more as their features need.
+// `layers` as mend_ranges() wants them and as much more as what is lost and fused in them needs.
 std::unique_ptr<Stream<PrintedLayer>> mended_layers(
     std::unique_ptr<Stream<InverseLayer>> layers, const std::vector<LayerRange>& ranges,
     int job_layers, const std::shared_ptr<const InverseSolver>& solver) {
@@ -88,7 +88,7 @@ std::unique_ptr<Stream<PrintedLayer>> mended_layers(
   using Look = Step<PrintedLayer, PrintedLayer>;
   out = std::make_unique<Look>(
       std::move(out), ranges.front(), 1, job_layers,
-      [solver](int, Look::Window window) { return with_features(solver->by(), window); });
+      [solver](int, Look::Window window) { return with_missing(solver->by(), window); });
   for (std::size_t round = 0; round < kMendRounds.size(); ++round) {
     const BlockForm form = kMendRounds[round];
     const LayerRange wanted = ranges[round + 1];

@@ -16,6 +16,8 @@ namespace binderjet {
 
 class ContactFinder {
  public:
+  explicit ContactFinder(int first_slice) : slice_(first_slice) {}
+
   // The next slice up: the target's runs, row by row, with a number for the region of each, and
   // what is printed in it.
   void add(const RunLayer& target, const std::vector<int>& number_of_run, const RunLayer& printed);
@@ -39,7 +41,7 @@ class ContactFinder {
                 int y);
   void found(std::size_t axis, int a, int b, const Region& bridge);
 
-  int slice_ = 0;
+  int slice_;
   std::vector<Ways> upward_;  // by row
   Ways spare_;                // walk()'s own, kept for its memory
   std::map<std::pair<int, int>, std::array<Region, 3>> found_;

@@ -14,8 +14,8 @@ namespace binderjet {
 // Distances of edges in mm; they add up over slices and layers. All sums are integers.
 class EdgeErrors {
  public:
-  // An edge without a printed one within this distance counts as this far: what vanished has no
-  // place to be wrong about. lost and fused (slicer/score/features.h) tell of that.
+  // An edge without a printed one within this distance counts as this far: what is lost has no
+  // place to be wrong about. Faults (slicer/score/faults.h) tell of that.
   static constexpr double kMostMm = 2;
 
   EdgeErrors() : of_um_(static_cast<std::size_t>(kMostMm * 1000) + 1, 0) {}

@@ -2,7 +2,7 @@
 #include "slicer/score/pieces.h"
 
 #include <algorithm>
-#include <map>
+#include <set>
 #include <utility>
 
 #include "slicer/layers/rows.h"
@@ -11,6 +11,25 @@ namespace binderjet {
 namespace {
 
 constexpr int kNone = -1;
+
+// Calls take(part, piece, first, last, y) for each stretch of row y that lies in a run of the
+// target and in one of the print, with their numbers.
+template <class Take>
+void for_each_shared(const RunLayer& target, const std::vector<int>& parts, const RunLayer& printed,
+                     const std::vector<int>& pieces, Take take) {
+  std::size_t part_begin = 0;
+  std::size_t piece_begin = 0;
+  for (int y = 0; y < target.height(); ++y) {
+    const rows::Row wanted = target.row(y);
+    const rows::Row row = printed.row(y);
+    rows::for_each_overlap(wanted, row, [&](std::size_t i, std::size_t j) {
+      take(parts[part_begin + i], pieces[piece_begin + j], std::max(wanted[2 * i], row[2 * j]),
+           std::min(wanted[2 * i + 1], row[2 * j + 1]), y);
+    });
+    part_begin += wanted.size() / 2;
+    piece_begin += row.size() / 2;
+  }
+}
 
 }  // namespace
 
@@ -77,62 +96,68 @@ std::vector<Region> RegionNumbers::regions() {
   return all;
 }
 
-void PieceCounter::add(const VoxelLayer& target, const RunLayer& printed) {
-  slices_ = static_cast<int>(target.slices.size());
+PieceFinder::PieceFinder(int slices_per_layer, int first_layer, Contacts contacts)
+    : slices_(slices_per_layer),
+      finds_contacts_(contacts == Contacts::kFind),
+      parts_(first_layer * slices_per_layer),
+      pieces_(first_layer),
+      contacts_(first_layer * slices_per_layer),
+      slice_(first_layer * slices_per_layer) {}
+
+const std::vector<int>& PieceFinder::add(const VoxelLayer& target, const RunLayer& printed) {
   const std::vector<int>& pieces = pieces_.add(printed);
   for (const RunLayer& slice : target.slices) {
     const std::vector<int>& parts = parts_.add(slice);
-    contacts_.add(slice, parts, printed);
-    for_each_shared(slice, parts, printed, pieces, [&](int part, int piece, auto...) {
-      const auto at = static_cast<std::size_t>(part);
-      if (at >= pieces_of_.size()) pieces_of_.resize(at + 1);
-      pieces_of_[at].insert(piece);
-    });
+    if (finds_contacts_) contacts_.add(slice, parts, printed);
+    for_each_shared(slice, parts, printed, pieces,
+                    [&](int part, int piece, int first, int last, int y) {
+                      const auto at = static_cast<std::size_t>(part);
+                      if (at >= pieces_of_.size()) pieces_of_.resize(at + 1);
+                      pieces_of_[at][piece].include(
+                          {{first, y, slice_}, {last, y + 1, slice_ + 1}, last - first, false});
+                    });
+    ++slice_;
   }
+  return pieces;
 }
 
-std::map<int, std::set<int>> PieceCounter::pieces_by_part() {
-  std::map<int, std::set<int>> by_part;
+std::map<int, std::map<int, Region>> PieceFinder::pieces_by_part() {
+  std::map<int, std::map<int, Region>> by_part;
   for (std::size_t part = 0; part < pieces_of_.size(); ++part) {
-    std::set<int>& all = by_part[parts_.root(static_cast<int>(part))];
-    for (const int piece : pieces_of_[part]) all.insert(pieces_.root(piece));
+    std::map<int, Region>& all = by_part[parts_.root(static_cast<int>(part))];
+    for (const auto& [piece, region] : pieces_of_[part]) all[pieces_.root(piece)].include(region);
   }
   return by_part;
 }
 
-std::int64_t PieceCounter::separated() {
-  const auto by_part = pieces_by_part();
-  return std::count_if(by_part.begin(), by_part.end(),
-                       [](const auto& part) { return part.second.size() > 1; });
-}
-
-std::vector<Region> PieceCounter::loose_pieces(const GoesOn& goes_on) {
+std::vector<Region> PieceFinder::loose(const std::function<bool(const Region&)>& goes_on) {
   const std::vector<Region> regions = pieces_.regions();
-  const auto region = [&](int piece) {
+  const auto whole = [&](int piece) {
     return in_slices(regions[static_cast<std::size_t>(piece)], slices_);
   };
   std::set<int> loose;  // a piece may come off two parts at once
-  auto by_part = pieces_by_part();
-  for (auto& [part, pieces] : by_part) {
+  for (auto& [part, pieces] : pieces_by_part()) {
     if (pieces.size() < 2) continue;
-    const auto kept = [&](int piece) { return goes_on && goes_on(region(piece)); };
-    if (std::erase_if(pieces, kept) == 0) {
-      pieces.erase(std::max_element(pieces.begin(), pieces.end(), [&](int a, int b) {
-        return region(a).voxels < region(b).voxels;
-      }));
+    std::set<int> off;
+    for (const auto& [piece, shared] : pieces) {
+      if (!goes_on || !goes_on(whole(piece))) off.insert(piece);
     }
-    loose.insert(pieces.begin(), pieces.end());
+    if (off.size() == pieces.size()) {
+      off.erase(std::max_element(off.begin(), off.end(),
+                                 [&](int a, int b) { return whole(a).voxels < whole(b).voxels; }));
+    }
+    loose.insert(off.begin(), off.end());
   }
   std::vector<Region> out;
   out.reserve(loose.size());
-  for (const int piece : loose) out.push_back(region(piece));
+  for (const int piece : loose) out.push_back(whole(piece));
   return out;
 }
 
-std::vector<Region> PieceCounter::joints() {
+std::vector<Region> PieceFinder::joined() {
   std::map<int, std::set<int>> parts_by_piece;
   for (const auto& [part, pieces] : pieces_by_part()) {
-    for (const int piece : pieces) parts_by_piece[piece].insert(part);
+    for (const auto& [piece, shared] : pieces) parts_by_piece[piece].insert(part);
   }
   const auto bridges = contacts_.contacts([this](int number) { return parts_.root(number); });
   std::set<int> bridged;

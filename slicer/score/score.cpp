@@ -3,8 +3,6 @@
 
 #include <utility>
 
-#include "slicer/voxels/any_slice.h"
-
 namespace binderjet {
 namespace {
 
@@ -43,66 +41,25 @@ std::unique_ptr<Stream<LayerScore>> score_layers(std::unique_ptr<Stream<VoxelLay
         const ComparedLayer& layer = *window[1];
         return LayerScore{layer, count_voxels(*layer.target, *layer.printed),
                           edge_errors(*layer.target, *layer.printed, grid),
-                          find_features(window[0].get(), layer, window[2].get(), grid)};
+                          find_lost_and_fused(window[0].get(), layer, window[2].get(), grid)};
       });
 }
 
-std::string word(FeatureKind kind) {
-  switch (kind) {
-    case FeatureKind::kLost:
-      return "lost";
-    case FeatureKind::kFused:
-      return "fused";
-    case FeatureKind::kSpurious:
-      break;
-  }
-  return "spurious";
-}
+Scorer::Scorer(const Grid& grid, int first_layer)
+    : faults_(grid.detail_vx[2], {.first_layer = first_layer}) {}
 
-Score::Score(const Grid& grid, int first_layer)
-    : rz_(grid.detail_vx[2]),
-      lost_regions_(first_layer * rz_),
-      fused_regions_(first_layer * rz_),
-      printed_regions_(first_layer) {}
-
-void Score::take(FeatureKind kind, const std::vector<Region>& regions, std::vector<Feature>& out) {
-  for (Region region : regions) {
-    if (kind == FeatureKind::kSpurious) {
-      if (region.touches) continue;
-      region.low[2] *= rz_;
-      region.high[2] *= rz_;
-      region.voxels *= rz_;
-    }
-    out.push_back({kind, region});
-    ++(kind == FeatureKind::kLost ? lost_ : kind == FeatureKind::kFused ? fused_ : spurious_);
-  }
-}
-
-std::vector<Feature> Score::add(const LayerScore& layer) {
-  voxels_ += layer.voxels;
-  edges_ += layer.edges;
-  std::vector<Feature> ended;
-  for (const RunLayer& slice : layer.features.lost) {
-    take(FeatureKind::kLost, lost_regions_.add(slice), ended);
-  }
-  for (const RunLayer& slice : layer.features.fused) {
-    take(FeatureKind::kFused, fused_regions_.add(slice), ended);
-  }
-  pieces_.add(*layer.layer.target, *layer.layer.printed);
-  const RunLayer wanted = any_slice(*layer.layer.target);
-  take(FeatureKind::kSpurious, printed_regions_.add(*layer.layer.printed, &wanted), ended);
+std::vector<Fault> Scorer::add(const LayerScore& layer) {
+  sum_.voxels += layer.voxels;
+  sum_.edges += layer.edges;
+  std::vector<Fault> ended = faults_.add(*layer.layer.target, *layer.layer.printed, layer.missing);
+  for (const Fault& fault : ended) ++sum_.faults[fault.kind];
   return ended;
 }
 
-std::vector<Feature> Score::finish() {
-  std::vector<Feature> ended;
-  take(FeatureKind::kLost, lost_regions_.finish(), ended);
-  take(FeatureKind::kFused, fused_regions_.finish(), ended);
-  take(FeatureKind::kSpurious, printed_regions_.finish(), ended);
-  separated_ = pieces_.separated();
-  loose_pieces_ = pieces_.loose_pieces();
-  joints_ = pieces_.joints();
-  return ended;
+JobScore Scorer::finish() {
+  sum_.last_faults = faults_.finish();
+  for (const Fault& fault : sum_.last_faults) ++sum_.faults[fault.kind];
+  return std::move(sum_);
 }
 
 }  // namespace binderjet

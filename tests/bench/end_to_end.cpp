@@ -53,7 +53,7 @@ void report(double height_mm, const Mode& mode, const SliceRun& run, const std::
 void run() {
   const Workplace place;
   const std::string ball = place / "ball.stl";
-  write_stl(coupon("golfball"), ball);
+  write_stl(coupon(CouponKind::kGolfBall), ball);
   const Words profile = {ball, "-p", std::string(BINDERJET_SOURCE_DIR) + "/profiles/z450.toml"};
   for (const Mode& mode : modes()) {
     const Words words = joined(profile, mode.words);

@@ -42,7 +42,7 @@ std::shared_ptr<const PrinterModel> declared_model() {
 // pass sees of them.
 struct Layers {
   Layers() {
-    Mesh mesh = coupon("golfball");
+    Mesh mesh = coupon(CouponKind::kGolfBall);
     Placement placement;
     placement.scale = kHeightMm / bounding_box(mesh).size(2);
     transform_part(mesh, placement, "golfball");

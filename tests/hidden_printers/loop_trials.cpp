@@ -51,7 +51,7 @@ void run(const Printer& printer, const Wanted& coupon, const Wanted& wanted, Tal
 
 int main(int argc, char** argv) {
   const std::string name = argc > 1 ? argv[1] : "";
-  const Wanted full = scaled(coupon("full"), kCouponScale);
+  const Wanted full = scaled(coupon(CouponKind::kFull), kCouponScale);
   Wanted wanted = full;
   if (argc > 3) {
     MeshFile file = read_mesh(argv[2]);

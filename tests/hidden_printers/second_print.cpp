@@ -75,12 +75,13 @@ PrintScore score_print(const Scene& scene, const std::vector<Shared<RunLayer>>& 
   const auto layers =
       score_layers(voxelize(scene.wanted.mesh, scene.grid, scene.box, scene.layers()),
                    stream_of(printed), scene.grid, scene.layers());
-  Score score(scene.grid, 0);
+  Scorer scorer(scene.grid, 0);
   while (layers->rest().size() > 0) {
-    for (const Shared<LayerScore>& layer : layers->next(kBlockLayers)) score.add(*layer);
+    for (const Shared<LayerScore>& layer : layers->next(kBlockLayers)) scorer.add(*layer);
   }
-  score.finish();
-  return {score.voxels(), score.lost(), score.fused(), score.spurious()};
+  const JobScore score = scorer.finish();
+  return {score.voxels, score.faults[FaultKind::kLost], score.faults[FaultKind::kFused],
+          score.faults[FaultKind::kSpurious]};
 }
 
 PrintScore score_masks(const Printer& printer, const Scene& scene,

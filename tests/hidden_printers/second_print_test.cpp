@@ -16,7 +16,7 @@ TEST(SecondPrint, IsNearestToTheModelWithInverseMasks) {
   const auto printers = hidden::catalogue(1);
   const auto printer = std::find_if(printers.begin(), printers.end(),
                                     [](const auto& p) { return p.name == "layer_shift_low"; });
-  const hidden::Wanted part = hidden::scaled(coupon("full"), 0.3);
+  const hidden::Wanted part = hidden::scaled(coupon(CouponKind::kFull), 0.3);
   const hidden::Loop loop = hidden::close_loop(*printer, part, part, hidden::declared(), {4, 4});
   const auto excess = [&](const std::string& enhance) {
     return loop.second.at(enhance).voxels.excess();

@@ -36,7 +36,7 @@ struct View {
 
 class PaperColor : public testing::Test {
  protected:
-  PaperColor() { write_stl(coupon("golfball"), place_ / "ball.stl"); }
+  PaperColor() { write_stl(coupon(CouponKind::kGolfBall), place_ / "ball.stl"); }
 
   View view(const std::vector<std::string>& options) const {
     std::vector<std::string> words = {"slice", place_ / "ball.stl",  "--scale", "0.3", "-p", "z450",

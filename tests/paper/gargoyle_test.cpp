@@ -58,21 +58,21 @@ class PaperGargoyle : public testing::Test {
     return out;
   }
 
-  Score score(const Print& print) const {
+  JobScore score(const Print& print) const {
     const LayerRange layers{0, static_cast<int>(print.layers.size())};
     const auto stream =
         score_layers(stream_of(print.target), stream_of(print.layers), grid_, layers);
-    Score sum(grid_, 0);
+    Scorer scorer(grid_, 0);
     while (stream->rest().size() > 0) {
-      for (const auto& layer : stream->next(kBlockLayers)) sum.add(*layer);
+      for (const auto& layer : stream->next(kBlockLayers)) scorer.add(*layer);
     }
-    sum.finish();
-    return sum;
+    return scorer.finish();
   }
-  static void tell(const std::string& name, const Score& sum) {
+  static void tell(const std::string& name, const JobScore& sum) {
     std::cout << fmt::format("{:<22} {:.4f}   {:.4f}    {:.3f}     {:.3f}   {:5} {:6} {:9}\n", name,
-                             sum.voxels().wrong(), sum.voxels().excess(), sum.edges().mean_mm(),
-                             sum.edges().p95_mm(), sum.lost(), sum.fused(), sum.spurious());
+                             sum.voxels.wrong(), sum.voxels.excess(), sum.edges.mean_mm(),
+                             sum.edges.p95_mm(), sum.faults[FaultKind::kLost],
+                             sum.faults[FaultKind::kFused], sum.faults[FaultKind::kSpurious]);
   }
   static void tell_head() {
     std::cout
@@ -91,11 +91,11 @@ class PaperGargoyle : public testing::Test {
     draw_reliefs(perfect.layers, grid_, name, "a_ideal");
     for (std::size_t passes = 0; passes < known_wrong.size(); ++passes) {
       const Print print = printed(model, static_cast<int>(passes), box);
-      const Score sum = score(print);
+      const JobScore sum = score(print);
       tell(passes == 0 ? "plain" : fmt::format("enhanced, {} passes", passes), sum);
       // Known to four digits from an independent implementation.
-      EXPECT_NEAR(sum.voxels().floor(), 0.0131, 5e-5);
-      EXPECT_NEAR(sum.voxels().wrong(), known_wrong[passes], 5e-5) << passes;
+      EXPECT_NEAR(sum.voxels.floor(), 0.0131, 5e-5);
+      EXPECT_NEAR(sum.voxels.wrong(), known_wrong[passes], 5e-5) << passes;
       draw_reliefs(print.layers, grid_, name, fmt::format("{}_{}_passes", "bcd"[passes], passes));
     }
   }

@@ -9,12 +9,11 @@
 #include "slicer/enhance/inverse/inverse_solver.h"
 #include "slicer/enhance/masks.h"
 #include "slicer/model/process_window.h"
-#include "slicer/score/features.h"
-#include "slicer/score/pieces.h"
 #include "slicer/score/voxel_counts.h"
 #include "tests/support/mask_regions.h"
 #include "tests/support/examples.h"
 #include "tests/support/random.h"
+#include "tests/support/score_volumes.h"
 
 namespace binderjet {
 namespace {
@@ -241,24 +240,10 @@ TEST(Inverse, PrintsWhatIsNarrowerThanTheSpreadAndInOnePiece) {
     const Case c = spires(level);
     const Volume masks = streamed(c, {0, c.layers}, kBlockLayers);
     const Volume printed = whole::print(masks, c.model().form(), c.grid);
-    const auto target =
-        whole::voxel_stream(c.target, c.grid.detail_vx[2], {0, c.layers})->next(c.layers);
-    std::vector<ComparedLayer> layers;
-    PieceCounter pieces;
-    for (int k = 0; k < c.layers; ++k) {
-      layers.push_back({target[static_cast<std::size_t>(k)],
-                        std::make_shared<const RunLayer>(whole::slice(printed, k))});
-      pieces.add(*layers.back().target, *layers.back().printed);
-    }
-    EXPECT_EQ(pieces.separated(), 0);
-    for (std::size_t k = 0; k < layers.size(); ++k) {
-      const LayerFeatures gone =
-          find_features(k == 0 ? nullptr : &layers[k - 1], layers[k],
-                        k + 1 == layers.size() ? nullptr : &layers[k + 1], c.grid);
-      for (const RunLayer& slice : gone.lost) EXPECT_EQ(slice.count(), 0) << "lost in layer " << k;
-      for (const RunLayer& slice : gone.fused)
-        EXPECT_EQ(slice.count(), 0) << "fused in layer " << k;
-    }
+    const JobScore score = whole::score(c.target, printed, c.grid).score;
+    EXPECT_EQ(score.faults[FaultKind::kLoose], 0);
+    EXPECT_EQ(score.faults[FaultKind::kLost], 0);
+    EXPECT_EQ(score.faults[FaultKind::kFused], 0);
   }
 }
 

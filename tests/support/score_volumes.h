@@ -11,12 +11,12 @@
 namespace binderjet::whole {
 
 struct ScoreOfVolumes {
-  Score score;
-  std::vector<Feature> features;
-  std::vector<Region> regions(FeatureKind kind) const {
+  JobScore score;
+  std::vector<Fault> faults;
+  std::vector<Region> regions(FaultKind kind) const {
     std::vector<Region> out;
-    for (const Feature& feature : features) {
-      if (feature.kind == kind) out.push_back(feature.region);
+    for (const Fault& fault : faults) {
+      if (fault.kind == kind) out.push_back(fault.region);
     }
     return out;
   }
@@ -28,14 +28,16 @@ inline ScoreOfVolumes score(const Volume& target, const Volume& printed, const G
   const LayerRange layers{0, printed.nz};
   const auto stream = score_layers(voxel_stream(target, grid.detail_vx[2], layers),
                                    layer_stream(printed), grid, layers);
-  ScoreOfVolumes out{Score(grid, 0), {}};
-  const auto take = [&](const std::vector<Feature>& features) {
-    out.features.insert(out.features.end(), features.begin(), features.end());
+  Scorer scorer(grid, 0);
+  ScoreOfVolumes out;
+  const auto take = [&](const std::vector<Fault>& faults) {
+    out.faults.insert(out.faults.end(), faults.begin(), faults.end());
   };
   while (stream->rest().size() > 0) {
-    for (const Shared<LayerScore>& layer : stream->next(block)) take(out.score.add(*layer));
+    for (const Shared<LayerScore>& layer : stream->next(block)) take(scorer.add(*layer));
   }
-  take(out.score.finish());
+  out.score = scorer.finish();
+  take(out.score.last_faults);
   return out;
 }
 

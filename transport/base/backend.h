@@ -44,7 +44,7 @@ struct DeviceStatus {
 };
 
 // One job at a time goes through a backend: start or resume, send each layer in order, end.
-// Destroyed before the end, or after a Fault of send or end, it holds the job where it can be
+// Destroyed before the end, or after a Failure of send or end, it holds the job where it can be
 // resumed and removes it where it cannot.
 class Backend {
  public:

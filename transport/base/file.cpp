@@ -24,22 +24,22 @@ File::~File() {
   if (fd_ >= 0) close(fd_);
 }
 
-Fault system_fault(int error, const std::string& path, const std::string& doing,
-                   FaultKind otherwise) {
+Failure system_failure(int error, const std::string& path, const std::string& doing,
+                       FailureKind otherwise) {
   if (error == ENOSPC || error == EDQUOT || error == EFBIG) {
-    return {FaultKind::kNoRoom, path, doing + ": the disk is full; make room and try again"};
+    return {FailureKind::kNoRoom, path, doing + ": the disk is full; make room and try again"};
   }
   return {otherwise, path, fmt::format("{}: {}", doing, std::generic_category().message(error))};
 }
 
-Result<File> open_file(const std::string& path, int flags, FaultKind otherwise) {
+Result<File> open_file(const std::string& path, int flags, FailureKind otherwise) {
   int fd = -1;
   do {
     fd = ::open(path.c_str(), flags | O_CLOEXEC, 0666);
   } while (fd < 0 && errno == EINTR);
   if (fd < 0) {
     const char* doing = (flags & O_CREAT) != 0 ? "cannot create it" : "cannot open it";
-    return tl::unexpected(system_fault(errno, path, doing, otherwise));
+    return tl::unexpected(system_failure(errno, path, doing, otherwise));
   }
   return File(fd);
 }
@@ -47,10 +47,10 @@ Result<File> open_file(const std::string& path, int flags, FaultKind otherwise) 
 Result<std::uint64_t> file_bytes(const File& file, const std::string& path) {
   struct stat info = {};
   if (fstat(file.fd(), &info) != 0) {
-    return tl::unexpected(system_fault(errno, path, "cannot look at it", FaultKind::kBadInput));
+    return tl::unexpected(system_failure(errno, path, "cannot look at it", FailureKind::kBadInput));
   }
   if (!S_ISREG(info.st_mode)) {
-    return tl::unexpected(Fault{FaultKind::kBadInput, path, "not a plain file"});
+    return tl::unexpected(Failure{FailureKind::kBadInput, path, "not a plain file"});
   }
   return static_cast<std::uint64_t>(info.st_size);
 }
@@ -60,7 +60,7 @@ Result<void> write_all(const File& file, std::span<const std::byte> bytes,
   while (!bytes.empty()) {
     const ssize_t done = ::write(file.fd(), bytes.data(), bytes.size());
     if (done < 0 && errno == EINTR) continue;
-    if (done < 0) return tl::unexpected(system_fault(errno, path, "cannot write"));
+    if (done < 0) return tl::unexpected(system_failure(errno, path, "cannot write"));
     bytes = bytes.subspan(static_cast<std::size_t>(done));
   }
   return {};
@@ -72,10 +72,10 @@ Result<void> read_at(const File& file, std::uint64_t offset, std::span<std::byte
     const ssize_t done = ::pread(file.fd(), bytes.data(), bytes.size(), static_cast<off_t>(offset));
     if (done < 0 && errno == EINTR) continue;
     if (done < 0) {
-      return tl::unexpected(system_fault(errno, path, "cannot read", FaultKind::kBadInput));
+      return tl::unexpected(system_failure(errno, path, "cannot read", FailureKind::kBadInput));
     }
     if (done == 0) {
-      return tl::unexpected(Fault{FaultKind::kBadInput, path, "ends too early"});
+      return tl::unexpected(Failure{FailureKind::kBadInput, path, "ends too early"});
     }
     bytes = bytes.subspan(static_cast<std::size_t>(done));
     offset += static_cast<std::uint64_t>(done);
@@ -86,7 +86,7 @@ Result<void> read_at(const File& file, std::uint64_t offset, std::span<std::byte
 Result<void> sync_file(const File& file, const std::string& path) {
   // fdatasync also writes the length where it changed, which is all that reading back needs.
   if (fdatasync(file.fd()) != 0) {
-    return tl::unexpected(system_fault(errno, path, "cannot write to the disk"));
+    return tl::unexpected(system_failure(errno, path, "cannot write to the disk"));
   }
   return {};
 }
@@ -95,21 +95,21 @@ Result<void> sync_folder(const std::string& folder) {
   const Result<File> file = open_file(folder, O_RDONLY | O_DIRECTORY);
   if (!file) return tl::unexpected(file.error());
   if (fsync(file->fd()) != 0) {
-    return tl::unexpected(system_fault(errno, folder, "cannot write to the disk"));
+    return tl::unexpected(system_failure(errno, folder, "cannot write to the disk"));
   }
   return {};
 }
 
 Result<void> rename_path(const std::string& from, const std::string& to) {
   if (std::rename(from.c_str(), to.c_str()) != 0) {
-    return tl::unexpected(system_fault(errno, to, "cannot give it its name"));
+    return tl::unexpected(system_failure(errno, to, "cannot give it its name"));
   }
   return {};
 }
 
 Result<void> make_folder(const std::string& folder) {
   if (mkdir(folder.c_str(), 0777) != 0 && errno != EEXIST) {
-    return tl::unexpected(system_fault(errno, folder, "cannot create the folder"));
+    return tl::unexpected(system_failure(errno, folder, "cannot create the folder"));
   }
   return {};
 }

@@ -29,14 +29,14 @@ class File {
   int fd_ = -1;
 };
 
-// errno as a Fault: a full disk or quota is kNoRoom, all else is `otherwise`. `doing` is a verb:
+// errno as a Failure: a full disk or quota is kNoRoom, all else is `otherwise`. `doing` is a verb:
 // "cannot write".
-Fault system_fault(int error, const std::string& path, const std::string& doing,
-                   FaultKind otherwise = FaultKind::kDevice);
+Failure system_failure(int error, const std::string& path, const std::string& doing,
+                       FailureKind otherwise = FailureKind::kDevice);
 
 // `flags` as open(2); descriptors never survive an exec.
 Result<File> open_file(const std::string& path, int flags,
-                       FaultKind otherwise = FaultKind::kDevice);
+                       FailureKind otherwise = FailureKind::kDevice);
 // Bytes of a regular file; anything else is kBadInput.
 Result<std::uint64_t> file_bytes(const File& file, const std::string& path);
 Result<void> write_all(const File& file, std::span<const std::byte> bytes, const std::string& path);

@@ -26,7 +26,7 @@ std::vector<std::byte> encode_record(RecordKind kind, int layer,
                                      std::span<const std::byte> payload);
 
 // Writes a job under a temporary name in the same folder and gives it its own name when it is
-// whole. The destructor removes an unfinished file. After a Fault only the destructor is left.
+// whole. The destructor removes an unfinished file. After a Failure only the destructor is left.
 class JobWriter {
  public:
   static Result<JobWriter> create(const std::string& path, std::string_view header);
@@ -76,7 +76,7 @@ class JobWriter {
 // Reads a job. All reading is const and may run in several threads at once.
 class JobReader {
  public:
-  // Damage in the header is a Fault; a file cut or damaged behind it opens, see damage().
+  // Damage in the header is a Failure; a file cut or damaged behind it opens, see damage().
   static Result<JobReader> open(const std::string& path);
 
   const std::string& path() const { return path_; }

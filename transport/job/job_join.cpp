@@ -15,8 +15,8 @@ struct Piece {
   std::size_t share;
 };
 
-Fault bad_share(const std::string& where, std::string what) {
-  return {FaultKind::kBadInput, where, std::move(what)};
+Failure bad_share(const std::string& where, std::string what) {
+  return {FailureKind::kBadInput, where, std::move(what)};
 }
 
 std::string layer_range(std::int64_t first, std::int64_t last) {
@@ -87,7 +87,8 @@ Result<void> join_jobs(const std::vector<std::string>& shares, const std::string
   if (!writer) return tl::unexpected(writer.error());
   for (const Piece& piece : pieces) {
     if (interrupted && interrupted()) {
-      return tl::unexpected(Fault{FaultKind::kInterrupted, out, "interrupted; nothing was left"});
+      return tl::unexpected(
+          Failure{FailureKind::kInterrupted, out, "interrupted; nothing was left"});
     }
     const auto record =
         readers[piece.share].read_record(piece.entry.kind, static_cast<int>(piece.entry.layer));

@@ -18,8 +18,8 @@ using namespace job_format;
 
 namespace {
 
-Fault bad_record(const std::string& path, const IndexEntry& entry, const std::string& what) {
-  return {FaultKind::kBadInput, path, fmt::format("layer {} {}: slice again", entry.layer, what)};
+Failure bad_record(const std::string& path, const IndexEntry& entry, const std::string& what) {
+  return {FailureKind::kBadInput, path, fmt::format("layer {} {}: slice again", entry.layer, what)};
 }
 
 // In a cut file nobody knows whether the last layer had more records to come. It had, if the layer
@@ -60,7 +60,7 @@ std::string describe_damage(const JobScan& scan) {
 }  // namespace
 
 Result<JobReader> JobReader::open(const std::string& path) {
-  Result<File> file = open_file(path, O_RDONLY, FaultKind::kBadInput);
+  Result<File> file = open_file(path, O_RDONLY, FailureKind::kBadInput);
   if (!file) return tl::unexpected(file.error());
   const Result<std::uint64_t> size = file_bytes(*file, path);
   if (!size) return tl::unexpected(size.error());
@@ -129,7 +129,7 @@ Result<std::vector<std::byte>> JobReader::read_record(RecordKind kind, int layer
   if (entry == nullptr) {
     const std::string why = whole() ? "the job does not have it" : damage_;
     return tl::unexpected(
-        Fault{FaultKind::kBadInput, path_, fmt::format("layer {}: {}", layer, why)});
+        Failure{FailureKind::kBadInput, path_, fmt::format("layer {}: {}", layer, why)});
   }
   std::vector<std::byte> record(static_cast<std::size_t>(entry->bytes));
   if (auto done = read_at(file_, entry->offset, record, path_); !done) {
@@ -168,7 +168,7 @@ Result<void> verify_job(const std::string& path) {
   const Result<JobReader> reader = JobReader::open(path);
   if (!reader) return tl::unexpected(reader.error());
   if (!reader->whole()) {
-    return tl::unexpected(Fault{FaultKind::kBadInput, path, reader->damage()});
+    return tl::unexpected(Failure{FailureKind::kBadInput, path, reader->damage()});
   }
   for (const IndexEntry& entry : reader->entries()) {
     const auto payload = reader->read(entry.kind, static_cast<int>(entry.layer));

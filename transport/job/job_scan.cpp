@@ -17,7 +17,7 @@ using namespace job_format;
 
 Result<JobFront> read_job_front(const File& file, std::uint64_t size, const std::string& path) {
   const auto bad = [&path](std::string what) {
-    return tl::unexpected(Fault{FaultKind::kBadInput, path, std::move(what)});
+    return tl::unexpected(Failure{FailureKind::kBadInput, path, std::move(what)});
   };
   if (size > kMaxFileBytes) return bad("longer than any job can be");
   if (size < kPreambleBytes) return bad("not a job, or cut in its header: slice again");

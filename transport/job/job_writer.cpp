@@ -37,7 +37,8 @@ std::string unfinished_name(const std::string& path) {
 Result<void> check_replaceable(const std::string& path) {
   struct stat info = {};
   if (stat(path.c_str(), &info) == 0 && !S_ISREG(info.st_mode)) {
-    return tl::unexpected(Fault{FaultKind::kDevice, path, "not a plain file; choose another name"});
+    return tl::unexpected(
+        Failure{FailureKind::kDevice, path, "not a plain file; choose another name"});
   }
   return {};
 }
@@ -69,7 +70,7 @@ std::vector<std::byte> encode_record(RecordKind kind, int layer,
 Result<JobWriter> JobWriter::create_kept(const std::string& part, const std::string& path,
                                          std::string_view header) {
   if (header.size() > kMaxHeaderBytes) {
-    return tl::unexpected(Fault{FaultKind::kBadInput, path, "the job's header is too long"});
+    return tl::unexpected(Failure{FailureKind::kBadInput, path, "the job's header is too long"});
   }
   if (auto free = check_replaceable(path); !free) return tl::unexpected(free.error());
   Result<File> file = open_file(part, O_RDWR | O_CREAT | O_EXCL);
@@ -118,13 +119,13 @@ Result<JobWriter> JobWriter::reopen_kept(const std::string& part, const std::str
     if (!writer.entries_.empty()) writer.size_ = writer.entries_.back().end();
   }
   if (writer.size_ != bytes) {
-    return tl::unexpected(Fault{
-        FaultKind::kBadInput, part,
+    return tl::unexpected(Failure{
+        FailureKind::kBadInput, part,
         fmt::format("damaged after layer {}: cancel it and print again", writer.last_layer())});
   }
   if (ftruncate(file->fd(), static_cast<off_t>(bytes)) != 0 ||
       lseek(file->fd(), static_cast<off_t>(bytes), SEEK_SET) < 0) {
-    return tl::unexpected(system_fault(errno, part, "cannot cut it to its whole layers"));
+    return tl::unexpected(system_failure(errno, part, "cannot cut it to its whole layers"));
   }
   writer.file_ = std::move(*file);
   return writer;
@@ -156,7 +157,7 @@ int JobWriter::last_layer() const {
 Result<void> JobWriter::append(std::span<const std::byte> records) {
   assert(file_ && !failed_);
   const auto bad = [this](std::string what) {
-    return tl::unexpected(Fault{FaultKind::kBadInput, path_, std::move(what)});
+    return tl::unexpected(Failure{FailureKind::kBadInput, path_, std::move(what)});
   };
   const std::size_t known = entries_.size();
   std::uint64_t offset = size_;

@@ -73,8 +73,8 @@ class FileBackend : public Backend {
   }
 
  private:
-  tl::unexpected<Fault> fault(std::string what) const {
-    return tl::unexpected(Fault{FaultKind::kBadInput, "file:" + path_, std::move(what)});
+  tl::unexpected<Failure> fault(std::string what) const {
+    return tl::unexpected(Failure{FailureKind::kBadInput, "file:" + path_, std::move(what)});
   }
 
   std::string path_;

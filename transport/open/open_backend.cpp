@@ -20,12 +20,12 @@ Result<std::unique_ptr<Backend>> open_backend(const std::string& uri,
   // A slash at the end would make the folder's own folder the folder itself.
   while (rest.size() > 1 && rest.back() == '/') rest.pop_back();
   if (scheme != "file" && scheme != "spool") {
-    return tl::unexpected(Fault{FaultKind::kBadInput, uri,
-                                "not a place to print to; use usb:, spool:DIR or file:PATH"});
+    return tl::unexpected(Failure{FailureKind::kBadInput, uri,
+                                  "not a place to print to; use usb:, spool:DIR or file:PATH"});
   }
   if (rest.empty()) {
-    return tl::unexpected(
-        Fault{FaultKind::kBadInput, uri, "no path behind the colon; use file:PATH or spool:DIR"});
+    return tl::unexpected(Failure{FailureKind::kBadInput, uri,
+                                  "no path behind the colon; use file:PATH or spool:DIR"});
   }
   return scheme == "file" ? make_file_backend(rest) : make_spool_backend(rest);
 }

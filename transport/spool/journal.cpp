@@ -102,7 +102,7 @@ Result<Believed> believe(const File& file, const std::string& path) {
   const Result<std::uint64_t> size = file_bytes(file, path);
   if (!size) return tl::unexpected(size.error());
   if (*size > kMaxBytes) {
-    return tl::unexpected(Fault{FaultKind::kBadInput, path, "too long for a journal"});
+    return tl::unexpected(Failure{FailureKind::kBadInput, path, "too long for a journal"});
   }
   std::string text(static_cast<std::size_t>(*size), '\0');
   if (auto read = read_at(file, 0, std::as_writable_bytes(std::span(text)), path); !read) {
@@ -131,7 +131,7 @@ Result<Journal> Journal::create(const std::string& path, const JournalState& sta
   Result<File> file = open_file(path, O_RDWR | O_CREAT | O_EXCL);
   if (!file) return tl::unexpected(file.error());
   if (flock(file->fd(), LOCK_EX | LOCK_NB) != 0) {
-    return tl::unexpected(system_fault(errno, path, "cannot lock it"));
+    return tl::unexpected(system_failure(errno, path, "cannot lock it"));
   }
   Journal journal;
   journal.file_ = std::move(*file);
@@ -152,7 +152,7 @@ Result<std::optional<Journal>> Journal::open(const std::string& path) {
   if (!file) return tl::unexpected(file.error());
   if (flock(file->fd(), LOCK_EX | LOCK_NB) != 0) {
     if (errno == EWOULDBLOCK) return std::optional<Journal>();
-    return tl::unexpected(system_fault(errno, path, "cannot lock it"));
+    return tl::unexpected(system_failure(errno, path, "cannot lock it"));
   }
   Result<Believed> believed = believe(*file, path);
   if (!believed) return tl::unexpected(believed.error());
@@ -177,7 +177,7 @@ Result<void> Journal::append(const std::string& words) {
   // What an earlier write left torn would hide every line behind it.
   if (ftruncate(file_.fd(), static_cast<off_t>(end_)) != 0 ||
       lseek(file_.fd(), static_cast<off_t>(end_), SEEK_SET) < 0) {
-    return tl::unexpected(system_fault(errno, path_, "cannot cut it to its right lines"));
+    return tl::unexpected(system_failure(errno, path_, "cannot cut it to its right lines"));
   }
   const std::uint64_t sum = checksum(as_bytes(words), checksum_);
   const std::string line = fmt::format("{} {:016x}\n", words, sum);

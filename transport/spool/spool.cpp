@@ -64,13 +64,13 @@ Result<void> Spool::create() const {
 
 Result<File> Spool::lock() const {
   if (!path_exists(folder_ + "/last-id")) {
-    return tl::unexpected(Fault{FaultKind::kDevice, "spool:" + folder_,
-                                "no spool is here; printing to it makes one"});
+    return tl::unexpected(Failure{FailureKind::kDevice, "spool:" + folder_,
+                                  "no spool is here; printing to it makes one"});
   }
   Result<File> file = open_file(folder_ + "/last-id", O_RDWR);
   if (!file) return file;
   while (flock(file->fd(), LOCK_EX) != 0) {
-    if (errno != EINTR) return tl::unexpected(system_fault(errno, folder_, "cannot lock it"));
+    if (errno != EINTR) return tl::unexpected(system_failure(errno, folder_, "cannot lock it"));
   }
   recover();
   return file;
@@ -104,7 +104,7 @@ Result<std::string> Spool::new_id(const File& lock) const {
   }
   const std::string next = std::to_string(last + 1);
   if (pwrite(lock.fd(), next.data(), next.size(), 0) != static_cast<ssize_t>(next.size())) {
-    return tl::unexpected(system_fault(errno, folder_ + "/last-id", "cannot write"));
+    return tl::unexpected(system_failure(errno, folder_ + "/last-id", "cannot write"));
   }
   if (auto done = sync_file(lock, folder_ + "/last-id"); !done) {
     return tl::unexpected(done.error());
@@ -128,11 +128,11 @@ Result<void> Spool::file_away(const std::string& id) const {
 Result<void> Spool::remove(const std::string& job_folder) const {
   for (const char* name : {"/journal", "/job.part", "/cancel"}) {
     if (unlink((job_folder + name).c_str()) != 0 && errno != ENOENT) {
-      return tl::unexpected(system_fault(errno, job_folder + name, "cannot remove it"));
+      return tl::unexpected(system_failure(errno, job_folder + name, "cannot remove it"));
     }
   }
   if (rmdir(job_folder.c_str()) != 0) {
-    return tl::unexpected(system_fault(errno, job_folder, "cannot remove it"));
+    return tl::unexpected(system_failure(errno, job_folder, "cannot remove it"));
   }
   return sync_folder(folder_of(job_folder));
 }

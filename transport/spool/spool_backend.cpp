@@ -37,11 +37,13 @@ class SpoolBackend : public Backend {
 
  private:
   std::string where() const { return "spool:" + spool_.folder(); }
-  Fault fault(FaultKind kind, std::string what) const { return {kind, where(), std::move(what)}; }
+  Failure fault(FailureKind kind, std::string what) const {
+    return {kind, where(), std::move(what)};
+  }
   Result<void> check_wanted();
   Result<void> acknowledge();
   // Holds the job, says why, and hands the fault on.
-  tl::unexpected<Fault> stopped(Fault fault);
+  tl::unexpected<Failure> stopped(Failure fault);
   void stop(const std::string& reason);
 
   Spool spool_;
@@ -53,7 +55,7 @@ void SpoolBackend::stop(const std::string& reason) {
   if (job_) hold_job(spool_, *std::exchange(job_, std::nullopt), reason);
 }
 
-tl::unexpected<Fault> SpoolBackend::stopped(Fault fault) {
+tl::unexpected<Failure> SpoolBackend::stopped(Failure fault) {
   stop(fault.what);
   return tl::unexpected(std::move(fault));
 }
@@ -97,17 +99,17 @@ Result<void> SpoolBackend::check_wanted() {
     static_cast<void>(spool_.remove(spool_.incoming(job_->id)));
   }
   job_.reset();
-  return tl::unexpected(fault(FaultKind::kInterrupted, what));
+  return tl::unexpected(fault(FailureKind::kInterrupted, what));
 }
 
 Result<int> SpoolBackend::send(int layer, std::span<const std::byte> records) {
-  if (!job_) return tl::unexpected(fault(FaultKind::kBadInput, "no job was started"));
+  if (!job_) return tl::unexpected(fault(FailureKind::kBadInput, "no job was started"));
   if (auto wanted = check_wanted(); !wanted) return tl::unexpected(wanted.error());
   if (auto due = check_next(*job_, layer, where()); !due) return stopped(due.error());
   if (auto done = job_->writer.append(records); !done) return stopped(done.error());
   if (job_->writer.last_layer() != layer) {
     return stopped(
-        fault(FaultKind::kBadInput, fmt::format("layer {} came without its records", layer)));
+        fault(FailureKind::kBadInput, fmt::format("layer {} came without its records", layer)));
   }
   ++job_->next;
   const JournalState& kept = job_->journal.state();
@@ -119,7 +121,7 @@ Result<int> SpoolBackend::send(int layer, std::span<const std::byte> records) {
 }
 
 Result<void> SpoolBackend::end() {
-  if (!job_) return tl::unexpected(fault(FaultKind::kBadInput, "no job was started"));
+  if (!job_) return tl::unexpected(fault(FailureKind::kBadInput, "no job was started"));
   if (auto whole = check_all_came(*job_, where()); !whole) return stopped(whole.error());
   if (auto wanted = check_wanted(); !wanted) return wanted;
   if (auto done = acknowledge(); !done) return stopped(done.error());

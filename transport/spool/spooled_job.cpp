@@ -51,7 +51,8 @@ Result<SpooledJob> resume_job(const Spool& spool, const std::string& id, const J
                               const std::string& where) {
   if (!is_job_id(id)) return tl::unexpected(unknown_job(where, id));
   const auto refuse = [&](const char* what) {
-    return tl::unexpected(Fault{FaultKind::kBadInput, where, fmt::format("job {} {}", id, what)});
+    return tl::unexpected(
+        Failure{FailureKind::kBadInput, where, fmt::format("job {} {}", id, what)});
   };
   const char* const damaged = "has a damaged journal: cancel it and print again";
   if (path_exists(spool.done_job(id))) return refuse("is done: there is nothing to resume");
@@ -93,16 +94,16 @@ Result<SpooledJob> resume_job(const Spool& spool, const std::string& id, const J
 
 Result<void> check_next(const SpooledJob& job, int layer, const std::string& where) {
   if (layer == job.next && layer < job.layer_count()) return {};
-  return tl::unexpected(Fault{FaultKind::kBadInput, where,
-                              fmt::format("layer {} came where layer {} of {} was due", layer,
-                                          job.next, job.layer_count())});
+  return tl::unexpected(Failure{FailureKind::kBadInput, where,
+                                fmt::format("layer {} came where layer {} of {} was due", layer,
+                                            job.next, job.layer_count())});
 }
 
 Result<void> check_all_came(const SpooledJob& job, const std::string& where) {
   if (job.next == job.layer_count()) return {};
   return tl::unexpected(
-      Fault{FaultKind::kBadInput, where,
-            fmt::format("the job ended before layer {} of {}", job.next, job.layer_count())});
+      Failure{FailureKind::kBadInput, where,
+              fmt::format("the job ended before layer {} of {}", job.next, job.layer_count())});
 }
 
 Result<void> finish_job(const Spool& spool, SpooledJob job) {
@@ -141,12 +142,12 @@ Result<bool> ask_cancel(const Spool& spool, const std::string& id, const std::st
     return true;
   }
   if (!path_exists(spool.done_job(id))) return tl::unexpected(unknown_job(where, id));
-  return tl::unexpected(
-      Fault{FaultKind::kBadInput, where, fmt::format("job {} is done: too late to cancel it", id)});
+  return tl::unexpected(Failure{FailureKind::kBadInput, where,
+                                fmt::format("job {} is done: too late to cancel it", id)});
 }
 
-Fault unknown_job(const std::string& where, const std::string& id) {
-  return {FaultKind::kBadInput, where,
+Failure unknown_job(const std::string& where, const std::string& id) {
+  return {FailureKind::kBadInput, where,
           fmt::format("no job {} is here; `binderjet status` lists the jobs", id)};
 }
 

@@ -31,7 +31,7 @@ struct JobDevice {
   std::uint64_t number = 0;  // the job's, there; not 0
 };
 
-// A new job in incoming/; after a Fault there is none. With the spool's lock.
+// A new job in incoming/; after a Failure there is none. With the spool's lock.
 Result<SpooledJob> start_job(const Spool& spool, const File& lock, const JobTicket& ticket,
                              const JobDevice& device = {});
 // A held job, back in incoming/, at the first layer that its journal does not acknowledge. It is
@@ -57,7 +57,7 @@ bool cancel_asked(const Spool& spool, const SpooledJob& job);
 Result<bool> ask_cancel(const Spool& spool, const std::string& id, const std::string& where);
 
 // kBadInput: no such job.
-Fault unknown_job(const std::string& where, const std::string& id);
+Failure unknown_job(const std::string& where, const std::string& id);
 // The header of a held job; kBadInput if there is none.
 Result<std::string> held_header(const Spool& spool, const std::string& id,
                                 const std::string& where);

@@ -43,7 +43,7 @@ class UsbBackend : public Backend {
       : text_(std::move(text)),
         uri_(std::move(uri)),
         options_(std::move(options)),
-        store_(options_.state_folder) {}
+        journals_(options_.state_folder) {}
   ~UsbBackend() override { stop("its sender stopped"); }
 
   Result<std::string> start(const JobTicket& ticket) override;
@@ -56,7 +56,7 @@ class UsbBackend : public Backend {
   Result<std::string> header(const std::string& id) override;
 
  private:
-  Fault fault(FaultKind kind, std::string what) const { return {kind, text_, std::move(what)}; }
+  Failure fault(FailureKind kind, std::string what) const { return {kind, text_, std::move(what)}; }
   Result<std::unique_ptr<UsbJob>> connect(const UsbUri& uri, const std::string& text,
                                           UsbSession::Check check, UsbJob::Keep keep);
   Result<void> connect_for_job(const UsbUri& uri, const std::string& text);
@@ -64,28 +64,28 @@ class UsbBackend : public Backend {
   Result<void> make_way(std::uint64_t number);
   Result<std::string> cancelled_folder() const;
   // Holds the job, says where and why, and hands the fault on.
-  tl::unexpected<Fault> stopped(Fault fault);
+  tl::unexpected<Failure> stopped(Failure fault);
   void stop(const std::string& reason);
   void forget_cancelled();
 
   std::string text_;
   UsbUri uri_;
   BackendOptions options_;
-  Spool store_;
+  Spool journals_;
   std::optional<SpooledJob> job_;  // the job being sent, as the spool's journal has it
   bool cancelled_ = false;
-  std::unique_ptr<UsbJob> there_;  // the job being sent, as the printer has it
+  std::unique_ptr<UsbJob> job_at_printer_;  // the job being sent, as the printer has it
 };
 
 // A Fault if somebody wants the job to stop: by a mark in its folder, or a signal to this process.
 Result<void> UsbBackend::check_wanted() {
-  if (job_ && cancel_asked(store_, *job_)) {
+  if (job_ && cancel_asked(journals_, *job_)) {
     cancelled_ = true;
     return tl::unexpected(
-        fault(FaultKind::kInterrupted, fmt::format("job {} was cancelled", job_->id)));
+        fault(FailureKind::kInterrupted, fmt::format("job {} was cancelled", job_->id)));
   }
   if (options_.stop_asked && options_.stop_asked()) {
-    return tl::unexpected(fault(FaultKind::kInterrupted, "interrupted"));
+    return tl::unexpected(fault(FailureKind::kInterrupted, "interrupted"));
   }
   return {};
 }
@@ -108,16 +108,16 @@ Result<void> UsbBackend::connect_for_job(const UsbUri& uri, const std::string& t
         return job_ ? job_->journal.acknowledge(layers, 0, digest) : Result<void>();
       });
   if (!job) return tl::unexpected(job.error());
-  there_ = std::move(*job);
-  const auto welcome = there_->greet();
+  job_at_printer_ = std::move(*job);
+  const auto welcome = job_at_printer_->greet();
   if (welcome) return {};
-  there_.reset();
+  job_at_printer_.reset();
   return tl::unexpected(welcome.error());
 }
 
 void UsbBackend::stop(const std::string& reason) {
-  there_.reset();
-  if (job_) hold_job(store_, *std::exchange(job_, std::nullopt), reason);
+  job_at_printer_.reset();
+  if (job_) hold_job(journals_, *std::exchange(job_, std::nullopt), reason);
 }
 
 // A job that somebody cancelled is removed by its sender, who alone knows that nobody writes to it.
@@ -126,21 +126,22 @@ void UsbBackend::forget_cancelled() {
   const std::uint64_t number = job.journal.state().key;
   cancelled_ = false;
   bool told = false;
-  if (there_) told = there_->cancel(number, Clock::now() + kCancelTime).has_value();
-  there_.reset();
-  if (const Result<File> lock = store_.lock()) {
+  if (job_at_printer_)
+    told = job_at_printer_->cancel(number, Clock::now() + kCancelTime).has_value();
+  job_at_printer_.reset();
+  if (const Result<File> lock = journals_.lock()) {
     if (!told) {
       if (const auto folder = cancelled_folder()) {
         static_cast<void>(
             open_file(fmt::format("{}/{:016x}", *folder, number), O_WRONLY | O_CREAT));
       }
     }
-    static_cast<void>(store_.remove(store_.incoming(job.id)));
+    static_cast<void>(journals_.remove(journals_.incoming(job.id)));
   }
 }
 
-tl::unexpected<Fault> UsbBackend::stopped(Fault fault) {
-  const int layer = there_ ? there_->acknowledged() : job_->next;
+tl::unexpected<Failure> UsbBackend::stopped(Failure fault) {
+  const int layer = job_at_printer_ ? job_at_printer_->acknowledged() : job_->next;
   fault.where = fmt::format("{}: layer {} of {}", fault.where.empty() ? text_ : fault.where, layer,
                             job_->layer_count());
   if (cancelled_) {
@@ -152,7 +153,7 @@ tl::unexpected<Fault> UsbBackend::stopped(Fault fault) {
 }
 
 Result<std::string> UsbBackend::cancelled_folder() const {
-  const std::string folder = store_.folder() + "/cancelled";
+  const std::string folder = journals_.folder() + "/cancelled";
   if (auto done = make_folder(folder); !done) return tl::unexpected(done.error());
   return folder;
 }
@@ -160,58 +161,59 @@ Result<std::string> UsbBackend::cancelled_folder() const {
 // The printer holds another job. One that was cancelled here while the printer could not be told
 // goes now; any other is somebody's unfinished print.
 Result<void> UsbBackend::make_way(std::uint64_t number) {
-  const std::string mark = fmt::format("{}/cancelled/{:016x}", store_.folder(), number);
+  const std::string mark = fmt::format("{}/cancelled/{:016x}", journals_.folder(), number);
   if (path_exists(mark)) {
-    auto done = there_->cancel(number, Clock::now() + uri_.patience);
+    auto done = job_at_printer_->cancel(number, Clock::now() + uri_.patience);
     if (done) unlink(mark.c_str());
     return done;
   }
   if (const auto jobs = status()) {
     for (const JobStatus& job : *jobs) {
-      const auto journal = Journal::peek(store_.held(job.id) + "/journal");
+      const auto journal = Journal::peek(journals_.held(job.id) + "/journal");
       if (!journal || journal->key != number) continue;
       return tl::unexpected(
-          fault(FaultKind::kDevice,
+          fault(FailureKind::kDevice,
                 fmt::format("the printer holds the unfinished job {0}: binderjet resume {0} --to "
                             "{1}, or binderjet cancel {0} --to {1}",
                             job.id, text_)));
     }
   }
   return tl::unexpected(
-      fault(FaultKind::kDevice, fmt::format("the printer holds an unfinished job from elsewhere; "
-                                            "binderjet cancel {:016x} --to {} makes it forget it",
-                                            number, text_)));
+      fault(FailureKind::kDevice, fmt::format("the printer holds an unfinished job from elsewhere; "
+                                              "binderjet cancel {:016x} --to {} makes it forget it",
+                                              number, text_)));
 }
 
 Result<std::string> UsbBackend::start(const JobTicket& ticket) {
   // First the printer: a job for a printer that is not there shall not be left behind.
   if (auto done = connect_for_job(uri_, text_); !done) return tl::unexpected(done.error());
-  if (auto done = store_.create(); !done) return tl::unexpected(done.error());
+  if (auto done = journals_.create(); !done) return tl::unexpected(done.error());
   std::uint64_t number = 0;
   while (number == 0) {
     if (getrandom(&number, sizeof number, 0) != sizeof number) {
-      return tl::unexpected(fault(FaultKind::kDevice, "the system gives no random numbers"));
+      return tl::unexpected(fault(FailureKind::kDevice, "the system gives no random numbers"));
     }
   }
   {
-    const Result<File> lock = store_.lock();
+    const Result<File> lock = journals_.lock();
     if (!lock) return tl::unexpected(lock.error());
-    Result<SpooledJob> job = start_job(store_, *lock, ticket, {there_->printer().uri, number});
+    Result<SpooledJob> job =
+        start_job(journals_, *lock, ticket, {job_at_printer_->printer().uri, number});
     if (!job) return tl::unexpected(job.error());
     job_ = *std::move(job);
   }
   const std::string id = job_->id;
-  Result<void> started = there_->start(number, ticket.layer_count, ticket.header);
-  if (!started && there_->in_the_way() != 0 && there_->in_the_way() != number) {
+  Result<void> started = job_at_printer_->start(number, ticket.layer_count, ticket.header);
+  if (!started && job_at_printer_->in_the_way() != 0 && job_at_printer_->in_the_way() != number) {
     // Until the way is free the job has not begun: nothing of it is kept.
-    started = make_way(there_->in_the_way());
-    if (started) started = there_->start(number, ticket.layer_count, ticket.header);
+    started = make_way(job_at_printer_->in_the_way());
+    if (started) started = job_at_printer_->start(number, ticket.layer_count, ticket.header);
     if (!started) {
-      const Fault why = started.error();
-      const Result<File> lock = store_.lock();
+      const Failure why = started.error();
+      const Result<File> lock = journals_.lock();
       job_.reset();
-      there_.reset();
-      if (lock) static_cast<void>(store_.remove(store_.incoming(id)));
+      job_at_printer_.reset();
+      if (lock) static_cast<void>(journals_.remove(journals_.incoming(id)));
       return tl::unexpected(why);
     }
   }
@@ -221,9 +223,9 @@ Result<std::string> UsbBackend::start(const JobTicket& ticket) {
 
 Result<int> UsbBackend::resume(const std::string& id, const JobTicket& ticket) {
   {
-    const Result<File> lock = store_.lock();
+    const Result<File> lock = journals_.lock();
     if (!lock) return tl::unexpected(lock.error());
-    Result<SpooledJob> job = resume_job(store_, id, ticket, text_);
+    Result<SpooledJob> job = resume_job(journals_, id, ticket, text_);
     if (!job) return tl::unexpected(job.error());
     job_ = *std::move(job);
   }
@@ -233,35 +235,35 @@ Result<int> UsbBackend::resume(const std::string& id, const JobTicket& ticket) {
   if (!same) return stopped(same.error());
   same->patience = uri_.patience;
   if (auto done = connect_for_job(*same, state.to); !done) return stopped(done.error());
-  Result<int> first =
-      there_->resume(state.key, state.layer_count, ticket.header, state.acknowledged, state.digest);
+  Result<int> first = job_at_printer_->resume(state.key, state.layer_count, ticket.header,
+                                              state.acknowledged, state.digest);
   if (!first) return stopped(first.error());
   job_->next = *first;
   return first;
 }
 
 Result<int> UsbBackend::send(int layer, std::span<const std::byte> records) {
-  if (!job_) return tl::unexpected(fault(FaultKind::kBadInput, "no job was started"));
+  if (!job_) return tl::unexpected(fault(FailureKind::kBadInput, "no job was started"));
   if (auto due = check_next(*job_, layer, text_); !due) return stopped(due.error());
   if (auto wanted = check_wanted(); !wanted) return stopped(wanted.error());
   ++job_->next;
-  if (auto done = there_->send(layer, records); !done) return stopped(done.error());
-  return there_->acknowledged();
+  if (auto done = job_at_printer_->send(layer, records); !done) return stopped(done.error());
+  return job_at_printer_->acknowledged();
 }
 
 Result<void> UsbBackend::end() {
-  if (!job_) return tl::unexpected(fault(FaultKind::kBadInput, "no job was started"));
+  if (!job_) return tl::unexpected(fault(FailureKind::kBadInput, "no job was started"));
   if (auto whole = check_all_came(*job_, text_); !whole) return stopped(whole.error());
-  if (auto done = there_->end(); !done) return stopped(done.error());
-  there_.reset();
-  return finish_job(store_, *std::exchange(job_, std::nullopt));
+  if (auto done = job_at_printer_->end(); !done) return stopped(done.error());
+  job_at_printer_.reset();
+  return finish_job(journals_, *std::exchange(job_, std::nullopt));
 }
 
 Result<std::vector<JobStatus>> UsbBackend::status() {
-  if (!path_exists(store_.folder())) return std::vector<JobStatus>();
-  const Result<File> lock = store_.lock();
+  if (!path_exists(journals_.folder())) return std::vector<JobStatus>();
+  const Result<File> lock = journals_.lock();
   if (!lock) return tl::unexpected(lock.error());
-  return store_.jobs();
+  return journals_.jobs();
 }
 
 Result<void> UsbBackend::cancel(const std::string& id) {
@@ -272,13 +274,13 @@ Result<void> UsbBackend::cancel(const std::string& id) {
       std::from_chars(id.data(), id.data() + 16, number, 16).ptr == id.data() + 16) {
     // A job of another computer, by its number.
   } else {
-    if (!path_exists(store_.folder())) return tl::unexpected(unknown_job(text_, id));
-    const Result<File> lock = store_.lock();
+    if (!path_exists(journals_.folder())) return tl::unexpected(unknown_job(text_, id));
+    const Result<File> lock = journals_.lock();
     if (!lock) return tl::unexpected(lock.error());
-    const Result<bool> asked = ask_cancel(store_, id, text_);
+    const Result<bool> asked = ask_cancel(journals_, id, text_);
     if (!asked) return tl::unexpected(asked.error());
     if (*asked) return {};
-    if (const auto journal = Journal::peek(store_.held(id) + "/journal")) {
+    if (const auto journal = Journal::peek(journals_.held(id) + "/journal")) {
       number = journal->key;
       if (const auto same = parse_usb_uri(journal->to)) {
         uri = *same;
@@ -289,7 +291,7 @@ Result<void> UsbBackend::cancel(const std::string& id) {
     if (const auto folder = cancelled_folder()) {
       static_cast<void>(open_file(fmt::format("{}/{:016x}", *folder, number), O_WRONLY | O_CREAT));
     }
-    if (auto done = store_.remove(store_.held(id)); !done) return done;
+    if (auto done = journals_.remove(journals_.held(id)); !done) return done;
   }
   // A printer may hang in any call of the system. The caller does not wait for that: the thread
   // keeps all it needs alive, and at worst ends with the process.
@@ -305,9 +307,9 @@ Result<void> UsbBackend::cancel(const std::string& id) {
   }).detach();
   const bool heard = answer.wait_for(kCancelLimit) == std::future_status::ready && answer.get();
   if (heard) {
-    unlink(fmt::format("{}/cancelled/{:016x}", store_.folder(), number).c_str());
+    unlink(fmt::format("{}/cancelled/{:016x}", journals_.folder(), number).c_str());
   } else if (id.size() == 16) {
-    return tl::unexpected(fault(FaultKind::kDevice, "the printer could not be told"));
+    return tl::unexpected(fault(FailureKind::kDevice, "the printer could not be told"));
   }
   return {};
 }
@@ -332,7 +334,7 @@ Result<DeviceStatus> UsbBackend::device() {
 }
 
 Result<std::string> UsbBackend::header(const std::string& id) {
-  return held_header(store_, id, text_);
+  return held_header(journals_, id, text_);
 }
 
 }  // namespace

@@ -132,14 +132,14 @@ Result<OpenPrinter> open_match(const Match& match, const UsbUri& uri) {
   const std::string plain = uri_of(match.descriptor, "");
   libusb_device_handle* raw = nullptr;
   if (const int error = libusb_open(match.device, &raw); error != 0) {
-    return tl::unexpected(usb_fault(error, plain, "cannot open the printer"));
+    return tl::unexpected(usb_failure(error, plain, "cannot open the printer"));
   }
   OpenPrinter printer{UsbHandle(raw), match.interface, match.model.quirks, "", ""};
   const std::string serial = serial_of(raw, match.descriptor);
   printer.uri = uri_of(match.descriptor, serial);
   if (!uri.serial.empty() && uri.serial != serial) {
     return tl::unexpected(
-        Fault{FaultKind::kDevice, plain, fmt::format("has the serial number {}", serial)});
+        Failure{FailureKind::kDevice, plain, fmt::format("has the serial number {}", serial)});
   }
   return printer;
 }
@@ -150,12 +150,12 @@ Result<void> claim(OpenPrinter& printer) {
   // such thing there is nothing to detach.
   static_cast<void>(libusb_set_auto_detach_kernel_driver(handle, 1));
   if (const int error = libusb_claim_interface(handle, printer.interface.number); error != 0) {
-    return tl::unexpected(usb_fault(error, printer.uri, "cannot claim the printer"));
+    return tl::unexpected(usb_failure(error, printer.uri, "cannot claim the printer"));
   }
   if (printer.interface.alternate != 0) {
     const int error = libusb_set_interface_alt_setting(handle, printer.interface.number,
                                                        printer.interface.alternate);
-    if (error != 0) return tl::unexpected(usb_fault(error, printer.uri, "cannot set it up"));
+    if (error != 0) return tl::unexpected(usb_failure(error, printer.uri, "cannot set it up"));
   }
   printer.device_id = read_device_id(handle, printer.interface, printer.quirks);
   return {};
@@ -165,8 +165,8 @@ Result<void> claim(OpenPrinter& printer) {
 
 Result<UsbUri> parse_usb_uri(const std::string& uri) {
   const auto bad = [&uri](const char* what) {
-    return tl::unexpected(Fault{FaultKind::kBadInput, uri,
-                                fmt::format("{}; use usb: or usb://VID:PID/SERIAL", what)});
+    return tl::unexpected(Failure{FailureKind::kBadInput, uri,
+                                  fmt::format("{}; use usb: or usb://VID:PID/SERIAL", what)});
   };
   if (!uri.starts_with("usb:")) return bad("not a USB printer");
   std::string_view rest = std::string_view(uri).substr(4);
@@ -199,7 +199,7 @@ Result<UsbUri> parse_usb_uri(const std::string& uri) {
 Result<UsbContext> open_usb_context(const std::string& uri) {
   libusb_context* context = nullptr;
   if (const int error = libusb_init(&context); error != 0) {
-    return tl::unexpected(usb_fault(error, uri, "cannot use USB"));
+    return tl::unexpected(usb_failure(error, uri, "cannot use USB"));
   }
   return UsbContext(context);
 }
@@ -209,11 +209,11 @@ Result<OpenPrinter> open_printer(libusb_context* context, const UsbUri& uri,
   libusb_device** raw = nullptr;
   const ssize_t count = libusb_get_device_list(context, &raw);
   if (count < 0) {
-    return tl::unexpected(usb_fault(static_cast<int>(count), text, "cannot look for printers"));
+    return tl::unexpected(usb_failure(static_cast<int>(count), text, "cannot look for printers"));
   }
   const DeviceList list(raw);
   std::vector<OpenPrinter> opened;
-  std::optional<Fault> fault;
+  std::optional<Failure> fault;
   for (const Match& match : matches(raw, count, uri, models)) {
     Result<OpenPrinter> printer = open_match(match, uri);
     if (printer) {
@@ -224,15 +224,15 @@ Result<OpenPrinter> open_printer(libusb_context* context, const UsbUri& uri,
   }
   if (opened.empty()) {
     if (fault) return tl::unexpected(*fault);
-    return tl::unexpected(Fault{
-        FaultKind::kDevice, text,
+    return tl::unexpected(Failure{
+        FailureKind::kDevice, text,
         "no such printer is connected; is it switched on? `binderjet devices` lists what is"});
   }
   if (opened.size() > 1) {
     std::string names;
     for (const OpenPrinter& one : opened) names += (names.empty() ? "" : ", ") + one.uri;
     return tl::unexpected(
-        Fault{FaultKind::kDevice, text, "several printers are connected; name one: " + names});
+        Failure{FailureKind::kDevice, text, "several printers are connected; name one: " + names});
   }
   if (auto done = claim(opened.front()); !done) return tl::unexpected(done.error());
   return std::move(opened.front());
@@ -244,7 +244,7 @@ Result<std::vector<SeenPrinter>> list_printers(const std::vector<UsbModel>& mode
   libusb_device** raw = nullptr;
   const ssize_t count = libusb_get_device_list(context->get(), &raw);
   if (count < 0) {
-    return tl::unexpected(usb_fault(static_cast<int>(count), "usb:", "cannot look for printers"));
+    return tl::unexpected(usb_failure(static_cast<int>(count), "usb:", "cannot look for printers"));
   }
   const DeviceList list(raw);
   std::vector<SeenPrinter> seen;
@@ -294,7 +294,7 @@ bool wait_for_printer(const UsbUri& uri, const std::vector<UsbModel>& models,
   return true;
 }
 
-Fault usb_fault(int error, const std::string& uri, const std::string& doing) {
+Failure usb_failure(int error, const std::string& uri, const std::string& doing) {
   const char* why = libusb_strerror(error);
   switch (error) {
     case LIBUSB_ERROR_ACCESS:
@@ -316,7 +316,7 @@ Fault usb_fault(int error, const std::string& uri, const std::string& doing) {
     default:
       break;
   }
-  return {FaultKind::kDevice, uri, fmt::format("{}: {}", doing, why)};
+  return {FailureKind::kDevice, uri, fmt::format("{}: {}", doing, why)};
 }
 
 }  // namespace binderjet

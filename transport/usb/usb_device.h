@@ -71,7 +71,7 @@ Result<std::vector<SeenPrinter>> list_printers(const std::vector<UsbModel>& mode
 bool wait_for_printer(const UsbUri& uri, const std::vector<UsbModel>& models,
                       std::chrono::milliseconds time, const std::function<bool()>& stop);
 
-// A libusb error as a Fault: what is wrong and what to do.
-Fault usb_fault(int error, const std::string& uri, const std::string& doing);
+// A libusb error as a Failure: what is wrong and what to do.
+Failure usb_failure(int error, const std::string& uri, const std::string& doing);
 
 }  // namespace binderjet

@@ -41,13 +41,13 @@ std::string joined(const std::vector<std::string>& words) {
 UsbJob::UsbJob(std::unique_ptr<UsbSession> session, std::chrono::milliseconds patience, Keep keep)
     : session_(std::move(session)), patience_(patience), keep_(std::move(keep)) {}
 
-tl::unexpected<Fault> UsbJob::broken(const std::string& what) {
+tl::unexpected<Failure> UsbJob::broken(const std::string& what) {
   healable_ = true;
   return final(what);
 }
 
-tl::unexpected<Fault> UsbJob::final(const std::string& what) {
-  return tl::unexpected(Fault{FaultKind::kDevice, printer().uri, what});
+tl::unexpected<Failure> UsbJob::final(const std::string& what) {
+  return tl::unexpected(Failure{FailureKind::kDevice, printer().uri, what});
 }
 
 Result<protocol::Welcome> UsbJob::greet() {
@@ -215,9 +215,9 @@ Result<void> UsbJob::run_until(const Done& done) {
 }
 
 // Goes on from the last acknowledged layer, if the fault is one that a new session may heal.
-Result<void> UsbJob::recover(Fault fault) {
+Result<void> UsbJob::recover(Failure fault) {
   bool again = healable_ || session_->worth_retrying();
-  while (again && !session_->gone() && fault.kind == FaultKind::kDevice) {
+  while (again && !session_->gone() && fault.kind == FailureKind::kDevice) {
     if (++failures_ > kMaxFailures) break;
     ++openings_;
     healable_ = false;

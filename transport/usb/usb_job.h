@@ -73,12 +73,12 @@ class UsbJob {
   Result<void> take_progress(const protocol::Progress& progress);
   Result<void> take_status(const protocol::Status& status);
   Result<void> take_refusal(const protocol::Refused& refused);
-  Result<void> recover(Fault fault);
+  Result<void> recover(Failure fault);
   Result<void> reopen();
   Result<protocol::Progress> open(bool resumed);
   Result<protocol::Frame> answer(protocol::Type type, Clock::time_point until);
-  tl::unexpected<Fault> broken(const std::string& what);
-  tl::unexpected<Fault> final(const std::string& what);
+  tl::unexpected<Failure> broken(const std::string& what);
+  tl::unexpected<Failure> final(const std::string& what);
 
   std::unique_ptr<UsbSession> session_;
   std::chrono::milliseconds patience_;

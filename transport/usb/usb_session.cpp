@@ -42,15 +42,15 @@ UsbSession::UsbSession(std::unique_ptr<UsbLink> link, std::chrono::milliseconds 
       check_(std::move(check)),
       decoder_(kMaxAnswerBytes) {}
 
-tl::unexpected<Fault> UsbSession::broken(const std::string& what) {
+tl::unexpected<Failure> UsbSession::broken(const std::string& what) {
   healable_ = true;
-  return tl::unexpected(Fault{FaultKind::kDevice, printer().uri, what});
+  return tl::unexpected(Failure{FailureKind::kDevice, printer().uri, what});
 }
 
-tl::unexpected<Fault> UsbSession::link_fault() {
+tl::unexpected<Failure> UsbSession::link_failure() {
   if (!gone()) return broken(link_->trouble());
   healable_ = false;
-  return tl::unexpected(Fault{FaultKind::kDevice, printer().uri, link_->trouble()});
+  return tl::unexpected(Failure{FailureKind::kDevice, printer().uri, link_->trouble()});
 }
 
 Result<protocol::Welcome> UsbSession::greet(Clock::time_point until) {
@@ -61,7 +61,7 @@ Result<protocol::Welcome> UsbSession::greet(Clock::time_point until) {
   next_out_ = 0;
   next_in_ = 1;  // the welcome is 0
   if (!link_->restart()) {
-    if (gone()) return link_fault();
+    if (gone()) return link_failure();
     return broken("the printer does not answer a reset; switch it off and on");
   }
   protocol::Hello hello;
@@ -73,15 +73,15 @@ Result<protocol::Welcome> UsbSession::greet(Clock::time_point until) {
     if (auto wanted = check_(); !wanted) return tl::unexpected(wanted.error());
     link_->wait(std::min(until, Clock::now() + kCheckTime));
     const std::vector<std::byte> more = link_->take_input();
-    if (more.empty() && link_->state() != LinkState::kFine) return link_fault();
+    if (more.empty() && link_->state() != LinkState::kFine) return link_failure();
     heard.insert(heard.end(), more.begin(), more.end());
     if (heard.size() > kMaxNoiseBytes) return broken("the printer sends bytes that are no answer");
     if (const auto refused = protocol::find_frame(heard, Type::kRefused, 4096)) {
       const auto why = protocol::decode_refused(refused->frame.payload);
       if (why && why->reason == protocol::Refusal::kNoVersion) {
-        return tl::unexpected(
-            Fault{FaultKind::kDevice, printer().uri,
-                  "speaks no version of binderjet-1 that this program knows; update one of them"});
+        return tl::unexpected(Failure{
+            FailureKind::kDevice, printer().uri,
+            "speaks no version of binderjet-1 that this program knows; update one of them"});
       }
     }
     for (std::size_t at = looked;;) {
@@ -91,10 +91,10 @@ Result<protocol::Welcome> UsbSession::greet(Clock::time_point until) {
       const auto welcome = protocol::decode_welcome(found->frame.payload);
       if (!welcome || welcome->session != hello.session || found->frame.sequence != 0) continue;
       if (welcome->version != protocol::kVersion) {
-        return tl::unexpected(Fault{FaultKind::kDevice, printer().uri,
-                                    fmt::format("speaks version {} of binderjet-1 where {} was "
-                                                "asked for; update its firmware",
-                                                welcome->version, protocol::kVersion)});
+        return tl::unexpected(Failure{FailureKind::kDevice, printer().uri,
+                                      fmt::format("speaks version {} of binderjet-1 where {} was "
+                                                  "asked for; update its firmware",
+                                                  welcome->version, protocol::kVersion)});
       }
       pending_.assign(heard.begin() + static_cast<std::ptrdiff_t>(found->end), heard.end());
       last_sent_ = link_->sent();
@@ -152,7 +152,7 @@ Result<std::optional<Frame>> UsbSession::next(Clock::time_point until) {
     pending_at_ = 0;
     pending_ = link_->take_input();
     if (!pending_.empty()) continue;
-    if (link_->state() != LinkState::kFine) return link_fault();
+    if (link_->state() != LinkState::kFine) return link_failure();
     if (auto wanted = check_(); !wanted) return tl::unexpected(wanted.error());
     if (auto patient = check_patience(); !patient) return tl::unexpected(patient.error());
     const auto now = Clock::now();

@@ -21,7 +21,7 @@ namespace binderjet {
 class UsbSession {
  public:
   using Clock = std::chrono::steady_clock;
-  // Asked every now and then during a wait; a Fault ends it.
+  // Asked every now and then during a wait; a Failure ends it.
   using Check = std::function<Result<void>()>;
 
   UsbSession(std::unique_ptr<UsbLink> link, std::chrono::milliseconds patience, Check check);
@@ -38,12 +38,12 @@ class UsbSession {
   void post(protocol::Type type, std::span<const std::byte> payload,
             std::span<const std::byte> more = {});
   // The next message, or nothing at `until`. A printer that neither takes nor says anything for
-  // longer than the patience is a Fault.
+  // longer than the patience is a Failure.
   Result<std::optional<protocol::Frame>> next(Clock::time_point until);
 
  private:
-  tl::unexpected<Fault> broken(const std::string& what);
-  tl::unexpected<Fault> link_fault();
+  tl::unexpected<Failure> broken(const std::string& what);
+  tl::unexpected<Failure> link_failure();
   Result<void> check_patience();
 
   std::unique_ptr<UsbLink> link_;

@@ -56,7 +56,7 @@ TEST_F(CheckVerb, HasNothingToSayOfASolidBlock) {
   EXPECT_NEAR(said["print_minutes"].get<double>(), 90 + 40 / 3.0, 1);  // 40 layers, 3 a minute
 }
 
-TEST_F(CheckVerb, NamesAFinThatVanishesWithItsPlaceAndSize) {
+TEST_F(CheckVerb, NamesAFinThatIsLostWithItsPlaceAndSize) {
   const nlohmann::json said = check(block(0.2, 0, false));
   EXPECT_EQ(said["lost"], 1);
   EXPECT_EQ(said["verdict"], "loses detail");
@@ -85,33 +85,33 @@ TEST_F(CheckVerb, NamesAPocketThatKeepsItsPowder) {
   EXPECT_NEAR(pocket["volume_mm3"].get<double>(), 32, 2);
 }
 
-TEST_F(CheckVerb, NamesTheJointOfTwoPartsThatPrintAsOne) {
+TEST_F(CheckVerb, NamesTheBridgeThatJoinsTwoParts) {
   // Two bars that are 0.15 mm apart, between y = 4 and 6 only.
   Mesh bars = models::joined(box({0, 0, 0}, {3, 10, 2}), box({3.15, 4, 0}, {6, 6, 2}));
   const nlohmann::json said = check(bars);
-  EXPECT_EQ(said["touching"], 1);
+  EXPECT_EQ(said["joined"], 1);
   EXPECT_EQ(said["verdict"], "loses detail");
-  const auto& joint = only(said, "touching");
-  EXPECT_NEAR(joint["at_mm"][0].get<double>(), 53.07, 0.1);
-  EXPECT_NEAR(joint["at_mm"][1].get<double>(), 55, 0.1);
-  EXPECT_NEAR(joint["size_mm"][0].get<double>(), 0.15, 0.06);
-  EXPECT_NEAR(joint["size_mm"][1].get<double>(), 2, 0.15);
-  EXPECT_EQ(joint["layers"], nlohmann::json({0, 20}));
-  EXPECT_EQ(
-      check(models::joined(box({0, 0, 0}, {3, 10, 2}), box({5, 4, 0}, {8, 6, 2})))["touching"], 0);
+  const auto& bridge = only(said, "joined");
+  EXPECT_NEAR(bridge["at_mm"][0].get<double>(), 53.07, 0.1);
+  EXPECT_NEAR(bridge["at_mm"][1].get<double>(), 55, 0.1);
+  EXPECT_NEAR(bridge["size_mm"][0].get<double>(), 0.15, 0.06);
+  EXPECT_NEAR(bridge["size_mm"][1].get<double>(), 2, 0.15);
+  EXPECT_EQ(bridge["layers"], nlohmann::json({0, 20}));
+  EXPECT_EQ(check(models::joined(box({0, 0, 0}, {3, 10, 2}), box({5, 4, 0}, {8, 6, 2})))["joined"],
+            0);
 }
 
-TEST_F(CheckVerb, NamesAPieceThatComesOff) {
+TEST_F(CheckVerb, NamesALoosePiece) {
   // Two blocks on a neck of 0.05 mm, which does not print.
   const Mesh blocks = models::joined(box({0, 0, 0}, {4, 4, 2}), box({6, 0, 0}, {9, 4, 2}));
   const nlohmann::json said =
       check(models::joined(blocks, box({3.9, 1.97, 0.5}, {6.1, 2.02, 1.5})));
-  EXPECT_EQ(said["separated"], 1);
-  const auto& piece = only(said, "separated");  // the lesser
+  EXPECT_EQ(said["loose"], 1);
+  const auto& piece = only(said, "loose");  // the lesser
   EXPECT_NEAR(piece["at_mm"][0].get<double>(), 57.5, 0.15);
   EXPECT_NEAR(piece["size_mm"][0].get<double>(), 3, 0.2);
   EXPECT_EQ(piece["layers"], nlohmann::json({0, 20}));
-  EXPECT_EQ(check(models::joined(blocks, box({3.9, 0, 0}, {6.1, 4, 2})))["separated"], 0);
+  EXPECT_EQ(check(models::joined(blocks, box({3.9, 0, 0}, {6.1, 4, 2})))["loose"], 0);
 }
 
 TEST_F(CheckVerb, NamesTheLikelyUnitOfAPartThatIsTooSmallOrTooLarge) {
@@ -136,7 +136,7 @@ TEST_F(CheckVerb, NamesTheLikelyUnitOfAPartThatIsTooSmallOrTooLarge) {
 TEST_F(CheckVerb, SaysWhereToAPerson) {
   models::write_obj(block(0.2, 0, false), here_ / "part.obj");
   const Ran ran = here_.run({"check", here_ / "part.obj", "-p", "z450", "--enhance", "none"});
-  EXPECT_THAT(ran.out, HasSubstr("1 feature vanishes"));
+  EXPECT_THAT(ran.out, HasSubstr("1 feature lost"));
   EXPECT_THAT(ran.out, HasSubstr("verdict: loses detail"));
 }
 

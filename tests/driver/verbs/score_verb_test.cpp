@@ -104,7 +104,7 @@ TEST_F(ScoreVerb, PutsPlainPaperAndInverseSideBySide) {
   EXPECT_EQ(plain["lost"], 1);
   EXPECT_EQ(inverse["lost"], 0) << "the pin is printed";
   EXPECT_EQ(inverse["spurious"], 0);
-  EXPECT_EQ(plain["separated"], 0);
+  EXPECT_EQ(plain["loose"], 0);
   EXPECT_GE(inverse["mask"]["least_island_px"], 4) << "the profile's rules";
   EXPECT_TRUE(plain["mask"]["least_hole_px"].is_null());
   EXPECT_LE(inverse["excess"], inverse["window_excess"]["mean"]);

@@ -85,7 +85,7 @@ TEST_P(FaultTable, EndsInTheWholeJobOrInOneLineAndAResume) {
     ASSERT_TRUE(printed) << printed.error().where << ": " << printed.error().what;
   } else {
     ASSERT_FALSE(printed) << "reported done";
-    EXPECT_EQ(printed.error().kind, FaultKind::kDevice);
+    EXPECT_EQ(printed.error().kind, FailureKind::kDevice);
     EXPECT_THAT(printed.error().what, HasSubstr(row.line));
     EXPECT_THAT(printed.error().where, HasSubstr("usb://1209:0001/EMU0001: layer "));
     EXPECT_THAT(printed.error().where, HasSubstr(" of 40"));
@@ -154,7 +154,7 @@ TEST_F(PrinterTest, PrintsOnceUnderFiftyRandomPlans) {
     at_once += printed ? 1 : 0;
     int tries = 0;
     while (!printed && tries < 30) {
-      ASSERT_EQ(printed.error().kind, FaultKind::kDevice) << printed.error().what;
+      ASSERT_EQ(printed.error().kind, FailureKind::kDevice) << printed.error().what;
       // A person plugs it in and fills it up; the plan goes on.
       printer_.refill();
       if (printer_.gone()) printer_.plug();

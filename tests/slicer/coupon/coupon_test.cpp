@@ -16,7 +16,7 @@ namespace {
 constexpr double kVoxelMm = 0.02;
 
 // The slices of a coupon at 20 um, 0.1 mm apart.
-std::vector<RunLayer> slices(const std::string& kind) {
+std::vector<RunLayer> slices(CouponKind kind) {
   auto mesh = std::make_shared<const Mesh>(coupon(kind));
   const Box box = bounding_box(*mesh);
   EXPECT_EQ(box.min[2], 0);
@@ -58,7 +58,7 @@ bool holds(const std::vector<double>& all, double width) {
 }
 
 TEST(Coupon, OfThePaperHasItsTenSlots) {
-  const auto layers = slices("slots");
+  const auto layers = slices(CouponKind::kSlots);
   const RunLayer& layer = layers[20];
   const auto gaps = widths(layer.row(static_cast<int>(3 / kVoxelMm)), true);
   for (int tenth = 1; tenth <= 10; ++tenth) EXPECT_TRUE(holds(gaps, tenth / 10.0)) << tenth;
@@ -66,7 +66,7 @@ TEST(Coupon, OfThePaperHasItsTenSlots) {
 }
 
 TEST(Coupon, OfWallsHasFifteenBothWaysOnOnePlate) {
-  const auto layers = slices("walls");
+  const auto layers = slices(CouponKind::kWalls);
   const RunLayer& layer = layers[25];
   const auto across_x = widths(layer.row(static_cast<int>(4 / kVoxelMm)), false);
   const auto walls_y = column(layer, 4);
@@ -78,7 +78,7 @@ TEST(Coupon, OfWallsHasFifteenBothWaysOnOnePlate) {
 }
 
 TEST(Coupon, FullHasSlotsAndWallsOfAllWidthsBothWays) {
-  const auto layers = slices("full");
+  const auto layers = slices(CouponKind::kFull);
   ASSERT_EQ(layers.size(), 44U);
   const RunLayer& layer = layers[40];
   const auto row = [&](double y_mm) { return layer.row(static_cast<int>(y_mm / kVoxelMm)); };
@@ -100,7 +100,7 @@ TEST(Coupon, FullHasSlotsAndWallsOfAllWidthsBothWays) {
 
 // Solid, hollow, solid again going up: the closed pocket; the open one stays hollow.
 TEST(Coupon, FullHasAClosedPocketAnOpenOneAndARoof) {
-  const auto layers = slices("full");
+  const auto layers = slices(CouponKind::kFull);
   const auto at = [&](double x, double y, double z) {
     return layers[static_cast<std::size_t>(z / 0.1)].at(static_cast<int>(x / kVoxelMm),
                                                         static_cast<int>(y / kVoxelMm));

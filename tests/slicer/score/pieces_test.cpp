@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Parts that come out in several pieces.
+// Parts that come out in several pieces, and pieces of several parts.
 #include "slicer/score/pieces.h"
 
 #include <gtest/gtest.h>
@@ -16,17 +16,20 @@ namespace {
 using whole::Random;
 using whole::Volume;
 
-PieceCounter counted(const Volume& target, const Volume& printed, int rz) {
-  PieceCounter counter;
+PieceFinder found(const Volume& target, const Volume& printed, int rz) {
+  PieceFinder finder(rz, 0, Contacts::kFind);
   const auto layers = whole::voxel_stream(target, rz, {0, printed.nz})->next(printed.nz);
   for (int k = 0; k < printed.nz; ++k) {
-    counter.add(*layers[static_cast<std::size_t>(k)], whole::slice(printed, k));
+    finder.add(*layers[static_cast<std::size_t>(k)], whole::slice(printed, k));
   }
-  return counter;
+  return finder;
 }
 
-std::int64_t separated(const Volume& target, const Volume& printed, int rz) {
-  return counted(target, printed, rz).separated();
+// Parts in more than one piece.
+std::int64_t broken(const Volume& target, const Volume& printed, int rz) {
+  const auto by_part = found(target, printed, rz).pieces_by_part();
+  return std::count_if(by_part.begin(), by_part.end(),
+                       [](const auto& part) { return part.second.size() > 1; });
 }
 
 // The region of each voxel by flooding; 0 is powder.
@@ -53,13 +56,13 @@ std::vector<int> flooded(const Volume& v) {
   return region;
 }
 
-TEST(Pieces, ABarWithAGapInItsPrintIsSeparated) {
+TEST(Pieces, ABarWithAGapInItsPrintComesOutInTwo) {
   Volume bar(20, 3, 2);
   bar.fill([](int x, int, int) { return x >= 2 && x < 18; });
   Volume broken(20, 3, 1);
   broken.fill([](int x, int, int) { return x >= 3 && x < 17 && x != 9; });
-  EXPECT_EQ(separated(bar, bar, 1), 0);
-  EXPECT_EQ(separated(bar, broken, 2), 1);
+  EXPECT_EQ(broken(bar, bar, 1), 0);
+  EXPECT_EQ(broken(bar, broken, 2), 1);
 }
 
 TEST(Pieces, TwoLegsThatMeetAboveAreOnePart) {
@@ -68,8 +71,8 @@ TEST(Pieces, TwoLegsThatMeetAboveAreOnePart) {
   arch.fill([](int x, int, int z) { return z >= 2 || x < 3 || x >= 6; });
   Volume legs(9, 1, 4);
   legs.fill([](int x, int, int) { return x < 3 || x >= 6; });
-  EXPECT_EQ(separated(arch, arch, 1), 0);
-  EXPECT_EQ(separated(arch, legs, 1), 1);
+  EXPECT_EQ(broken(arch, arch, 1), 0);
+  EXPECT_EQ(broken(arch, legs, 1), 1);
 }
 
 TEST(Pieces, TheLesserPieceOfABrokenBarIsLoose) {
@@ -77,7 +80,7 @@ TEST(Pieces, TheLesserPieceOfABrokenBarIsLoose) {
   bar.fill([](int x, int, int) { return x >= 2 && x < 18; });
   Volume broken(20, 3, 1);
   broken.fill([](int x, int, int) { return x >= 3 && x < 17 && x != 9; });
-  const std::vector<Region> loose = counted(bar, broken, 2).loose_pieces();
+  const std::vector<Region> loose = found(bar, broken, 2).loose();
   ASSERT_EQ(loose.size(), 1);
   EXPECT_EQ(loose[0].low, (std::array{3, 0, 0}));
   EXPECT_EQ(loose[0].high, (std::array{9, 3, 2}));  // 2 slices
@@ -89,17 +92,17 @@ TEST(Pieces, WhatMayGoOnElsewhereIsNotLooseAndWhatComesOffItIs) {
   bar.fill([](int, int, int) { return true; });
   Volume broken(20, 1, 1);
   broken.fill([](int x, int, int) { return x < 2 || (x >= 3 && x < 17) || x >= 18; });
-  PieceCounter counter = counted(bar, broken, 1);
-  EXPECT_EQ(counter.loose_pieces().size(), 2);
+  PieceFinder finder = found(bar, broken, 1);
+  EXPECT_EQ(finder.loose().size(), 2);
   const auto at_the_end = [](const Region& region) {
     return region.low[0] == 0 || region.high[0] == 20;
   };
-  const std::vector<Region> loose = counter.loose_pieces(at_the_end);
+  const std::vector<Region> loose = finder.loose(at_the_end);
   ASSERT_EQ(loose.size(), 1);
   EXPECT_EQ(loose[0].low[0], 3);
 }
 
-TEST(Pieces, ABridgeBetweenTwoPartsIsTheirJointAlongEachAxis) {
+TEST(Pieces, ABridgeBetweenTwoPartsJoinsThemAlongEachAxis) {
   for (std::size_t axis = 0; axis < 3; ++axis) {
     SCOPED_TRACE(axis);
     // Two bars of 4 x 4 along the axis, 3 apart; the print fills 2 x 2 of the gap.
@@ -110,23 +113,23 @@ TEST(Pieces, ABridgeBetweenTwoPartsIsTheirJointAlongEachAxis) {
       const int along = std::array{x, y, z}[axis];
       return along < 4 || along >= 7;
     });
-    Volume joined(size[0], size[1], size[2]);
-    joined.fill([&](int x, int y, int z) {
+    Volume bridged(size[0], size[1], size[2]);
+    bridged.fill([&](int x, int y, int z) {
       std::array<int, 3> at{x, y, z};
       const bool solid = at[axis] < 4 || at[axis] >= 7;
       at[axis] = 1;
       return solid || std::all_of(at.begin(), at.end(), [](int v) { return v == 1 || v == 2; });
     });
-    EXPECT_TRUE(counted(bars, bars, 1).joints().empty());
-    const std::vector<Region> joints = counted(bars, joined, 1).joints();
-    ASSERT_EQ(joints.size(), 1);
+    EXPECT_TRUE(found(bars, bars, 1).joined().empty());
+    const std::vector<Region> bridges = found(bars, bridged, 1).joined();
+    ASSERT_EQ(bridges.size(), 1);
     std::array<int, 3> low{1, 1, 1};
     std::array<int, 3> high{3, 3, 3};
     low[axis] = 4;
     high[axis] = 7;
-    EXPECT_EQ(joints[0].low, low);
-    EXPECT_EQ(joints[0].high, high);
-    EXPECT_EQ(joints[0].voxels, 2 * 2 * 3);
+    EXPECT_EQ(bridges[0].low, low);
+    EXPECT_EQ(bridges[0].high, high);
+    EXPECT_EQ(bridges[0].voxels, 2 * 2 * 3);
   }
 }
 
@@ -135,13 +138,13 @@ TEST(Pieces, ThatMeetRoundACornerAreJoinedByTheWholePiece) {
   parts.fill([](int x, int y, int) { return (x < 2 && y < 2) || (x >= 6 && y >= 6); });
   Volume printed(8, 8, 1);
   printed.fill([](int x, int y, int) { return x < 2 || y >= 6; });
-  const std::vector<Region> joints = counted(parts, printed, 1).joints();
-  ASSERT_EQ(joints.size(), 1);
-  EXPECT_EQ(joints[0].voxels, 2 * 8 + 2 * 6);
+  const std::vector<Region> bridges = found(parts, printed, 1).joined();
+  ASSERT_EQ(bridges.size(), 1);
+  EXPECT_EQ(bridges[0].voxels, 2 * 8 + 2 * 6);
 }
 
-// Joints are there exactly where a flood of the print finds two parts in one piece.
-TEST(Pieces, HaveAJointForEveryPieceOfTwoParts) {
+// Parts are joined exactly where a flood of the print finds two parts in one piece.
+TEST(Pieces, AreJoinedWhereverAPieceHasTwoParts) {
   Random random;
   for (int round = 0; round < 300; ++round) {
     SCOPED_TRACE(round);
@@ -155,7 +158,7 @@ TEST(Pieces, HaveAJointForEveryPieceOfTwoParts) {
     }
     bool expected = false;
     for (const auto& [piece, all] : parts_of) expected |= all.size() > 1;
-    ASSERT_EQ(!counted(target, printed, 1).joints().empty(), expected);
+    ASSERT_EQ(!found(target, printed, 1).joined().empty(), expected);
   }
 }
 
@@ -177,7 +180,7 @@ TEST(Pieces, AreThoseOfAFlood) {
     }
     std::int64_t expected = 0;
     for (const auto& [part, all] : of) expected += all.size() > 1 ? 1 : 0;
-    ASSERT_EQ(separated(target, printed, rz), expected);
+    ASSERT_EQ(broken(target, printed, rz), expected);
   }
 }
 

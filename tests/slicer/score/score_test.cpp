@@ -61,7 +61,7 @@ TEST(EdgeErrors, AreThoseOfASearchThroughAllEdges) {
         ++count;
       }
     }
-    const EdgeErrors errors = whole::score(target, printed, grid).score.edges();
+    const EdgeErrors errors = whole::score(target, printed, grid).score.edges;
     ASSERT_EQ(errors.edges(), count);
     // Distances are rounded to whole nanometres.
     ASSERT_NEAR(errors.mean_mm(), count == 0 ? 0 : sum / static_cast<double>(count), 1e-6);
@@ -76,7 +76,7 @@ TEST(EdgeErrors, OfAWallThatGrewAreItsGrowth) {
   target.fill([](int x, int, int) { return x >= 10 && x < 20; });
   Volume printed(40, 200, 1);
   printed.fill([](int x, int, int) { return x >= 9 && x < 22; });
-  const EdgeErrors errors = whole::score(target, printed, grid).score.edges();
+  const EdgeErrors errors = whole::score(target, printed, grid).score.edges;
   // 200 sides are 0.1 mm off, 200 are 0.2 mm off, and 2 x 10 ends are right. By the corners the
   // bar's own end is nearer: 0.05 mm for the last side, 0.15 mm for the one before.
   EXPECT_EQ(errors.edges(), 420);
@@ -89,7 +89,7 @@ TEST(EdgeErrors, OfWhatIsNotPrintedAreTheMostThatIsSearched) {
   const Grid grid{{0.1, 0.1, 0.1}, {1, 1, 1}};
   Volume target(5, 5, 1);
   target.set(2, 2, 0, true);
-  const EdgeErrors errors = whole::score(target, Volume(5, 5, 1), grid).score.edges();
+  const EdgeErrors errors = whole::score(target, Volume(5, 5, 1), grid).score.edges;
   EXPECT_EQ(errors.edges(), 4);
   EXPECT_DOUBLE_EQ(errors.mean_mm(), EdgeErrors::kMostMm);
 }

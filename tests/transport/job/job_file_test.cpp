@@ -125,7 +125,7 @@ TEST(JobFile, ReplacesAJobOnlyByAWholeOne) {
 TEST(JobFile, NeverReplacesADevice) {
   const auto writer = JobWriter::create("/dev/null", "{}");
   ASSERT_FALSE(writer);
-  EXPECT_EQ(writer.error().kind, FaultKind::kDevice);
+  EXPECT_EQ(writer.error().kind, FailureKind::kDevice);
 }
 
 TEST(JobFile, RefusesRecordsOutOfOrderOrDamaged) {
@@ -148,8 +148,8 @@ TEST(JobFile, SaysThatAFileIsNotAJob) {
   const TempFolder folder;
   write_text(folder / "a.stl", std::string(200, 'x'));
   EXPECT_THAT(JobReader::open(folder / "a.stl").error().what, HasSubstr("not a job"));
-  EXPECT_EQ(JobReader::open(folder / "none").error().kind, FaultKind::kBadInput);
-  EXPECT_EQ(JobReader::open(folder.path()).error().kind, FaultKind::kBadInput);
+  EXPECT_EQ(JobReader::open(folder / "none").error().kind, FailureKind::kBadInput);
+  EXPECT_EQ(JobReader::open(folder.path()).error().kind, FailureKind::kBadInput);
 }
 
 // Offsets of the layers' ends, so that a cut says exactly how many layers are whole.

@@ -41,7 +41,7 @@ class RefusedJoin : public testing::Test {
     const auto joined = join_jobs(shares, folder_ / "joined.bjob", 40);
     EXPECT_THAT(names_in(folder_.path()), Not(testing::Contains(HasSubstr("joined"))));
     if (joined) return "joined";
-    EXPECT_EQ(joined.error().kind, FaultKind::kBadInput);
+    EXPECT_EQ(joined.error().kind, FailureKind::kBadInput);
     return joined.error().what;
   }
   TempFolder folder_;

@@ -227,7 +227,7 @@ TEST_F(FullDisk, EndsASpooledJobInNoRoomAndHoldsIt) {
       sent = backend->send(layer, sample_records(layer));
     }
     ASSERT_FALSE(sent) << "the disk was not full";
-    EXPECT_EQ(sent.error().kind, FaultKind::kNoRoom) << sent.error().what;
+    EXPECT_EQ(sent.error().kind, FailureKind::kNoRoom) << sent.error().what;
   }
   EXPECT_THAT(names_in(spool + "/done"), IsEmpty());
   EXPECT_THAT(names_in(spool + "/held"), testing::SizeIs(1));
@@ -247,7 +247,7 @@ TEST_F(FullDisk, EndsAJobFileInNoRoomAndLeavesNothing) {
       written = doomed.append(sample_records(layer));
     }
     ASSERT_FALSE(written);
-    EXPECT_EQ(written.error().kind, FaultKind::kNoRoom);
+    EXPECT_EQ(written.error().kind, FailureKind::kNoRoom);
   }
   EXPECT_THAT(names_in(disk_), IsEmpty());
 }
@@ -258,7 +258,7 @@ TEST_F(FullDisk, StartsNoJobWithoutRoom) {
   std::ofstream(disk_ + "/ballast") << std::string(1 << 20, 'x');
   const auto id = (*open_backend(uri))->start(ticket());
   ASSERT_FALSE(id);
-  EXPECT_EQ(id.error().kind, FaultKind::kNoRoom);
+  EXPECT_EQ(id.error().kind, FailureKind::kNoRoom);
   EXPECT_THAT(names_in(disk_ + "/spool/incoming"), IsEmpty());
 }
 

@@ -176,7 +176,7 @@ TEST_F(SpoolTest, CancelsAJobThatIsBeingSent) {
   ASSERT_TRUE(backend()->cancel(*id));
   const auto stopped = sender->send(3, sample_records(3));
   ASSERT_FALSE(stopped);
-  EXPECT_EQ(stopped.error().kind, FaultKind::kInterrupted);
+  EXPECT_EQ(stopped.error().kind, FailureKind::kInterrupted);
   EXPECT_THAT(stopped.error().what, HasSubstr("cancelled before layer 3"));
   EXPECT_THAT(*backend()->status(), IsEmpty());
 }
@@ -221,7 +221,7 @@ TEST_F(SpoolTest, NeverGivesAnIdTwice) {
 TEST_F(SpoolTest, MakesNoSpoolWhereTheParentIsMissing) {
   const auto started = (*open_backend("spool:" + (folder_ / "no/such/spool")))->start(ticket_);
   ASSERT_FALSE(started);
-  EXPECT_EQ(started.error().kind, FaultKind::kDevice);
+  EXPECT_EQ(started.error().kind, FailureKind::kDevice);
 }
 
 TEST_F(SpoolTest, SaysThatThereIsNoSpool) {

@@ -50,11 +50,12 @@ class Mending {
       : by_(by), own_(own), all_(by, std::move(layers), job_layers) {}
 
   Stretch::Layers run() {
-    std::vector<Region> faults = all_.faults().regions;
-    std::stable_sort(faults.begin(), faults.end(),
-                     [](const Region& a, const Region& b) { return a.voxels > b.voxels; });
+    std::vector<Fault> faults = all_.faults().found;
+    std::stable_sort(faults.begin(), faults.end(), [](const Fault& a, const Fault& b) {
+      return a.region.voxels > b.region.voxels;
+    });
     if (faults.size() > kMostFaults) faults.resize(kMostFaults);
-    for (const Region& fault : faults) mend(fault);
+    for (const Fault& fault : faults) mend(fault.region);
     const Stretch::Layers& layers = all_.layers();
     return {layers.begin() + own_.first, layers.begin() + own_.last};
   }
@@ -81,11 +82,11 @@ void Mending::mend(const Region& fault) {
   std::optional<Stretch> part;
   for (Patch patch : patches(layers, pixels, own_, near_layers)) {
     if (!part.has_value()) part = all_.cut(near, near_layers);
-    const std::size_t before = part->faults().regions.size();
+    const std::size_t before = part->faults().found.size();
     if (!part->take(patch.moved(-near_layers.first))) continue;
     if (!all_.take(patch)) {
       part.reset();
-    } else if (part->faults().regions.size() < before) {
+    } else if (part->faults().found.size() < before) {
       return;
     }
   }

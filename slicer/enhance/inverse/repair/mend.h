@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Mending: what no single layer's mask could set right, over many layers at once.
 //
-// Around a feature that is lost, fused or spurious, or a piece that came off, the masks of all its
-// layers take pixels from simpler ones (the plain masks, those of a layer beside them), from near
-// to far, as long as that leaves less such faults and no layer prints worse than with plain masks.
+// Around a fault (lost, fused, spurious or loose) the masks of all its layers take pixels from
+// simpler ones (the plain masks, those of a layer beside them), from near to far, as long as that
+// leaves less such faults and no layer prints worse than with plain masks.
 #pragma once
 
 #include "slicer/enhance/inverse/repair/stretch.h"

@@ -9,8 +9,8 @@
 #include <vector>
 
 #include "slicer/enhance/inverse/repair/spurious.h"
-#include "slicer/enhance/inverse/search/breaks.h"
-#include "slicer/layers/regions.h"
+#include "slicer/enhance/inverse/search/loose_in_window.h"
+#include "slicer/score/faults.h"
 #include "slicer/voxels/any_slice.h"
 
 namespace binderjet {
@@ -18,22 +18,10 @@ namespace {
 
 // What a fault weighs, in voxels: a piece that comes off is seen as one by up to three layers and
 // spoils a part; a feature that is gone spoils itself.
-constexpr std::int64_t kBreakWeight = 1000;
+constexpr std::int64_t kPieceWeight = 1000;
 constexpr std::int64_t kFeatureWeight = 500;
 
 using FaultsByOffset = std::map<int, Shared<LayerFaults>>;
-
-std::int64_t weight_of(const std::vector<RunLayer>& gone) {
-  RegionFinder finder;
-  std::size_t regions = 0;
-  std::int64_t voxels = 0;
-  for (const RunLayer& slice : gone) {
-    regions += finder.add(slice).size();
-    voxels += slice.count();
-  }
-  regions += finder.finish().size();
-  return kFeatureWeight * static_cast<std::int64_t>(regions) + voxels;
-}
 
 class Rescue {
  public:
@@ -67,13 +55,14 @@ class Rescue {
 std::int64_t Rescue::weight(const FaultsByOffset& all) const {
   std::int64_t sum = 0;
   for (const auto& [offset, of] : all) {
-    sum += weight_of(of->gone.lost) + weight_of(of->gone.fused) + of->barren.count();
-    if (aim_ != RescueAim::features) sum += kBreakWeight * of->breaks.count;
+    for (const Fault& fault : of->faults) sum += kFeatureWeight + fault.region.voxels;
+    sum += of->spurious.count();
+    if (aim_ != RescueAim::features) sum += kPieceWeight * of->pieces.count;
   }
   return sum;
 }
 
-// As `score` finds them; breaks as three layers show them.
+// Lost and fused as `score` finds them, but within one layer; loose as three layers show it.
 LayerFaults Rescue::faults_of(int offset, const RunLayer& mask,
                               std::map<int, ComparedLayer>& compared) const {
   std::array<const ComparedLayer*, 3> seen{};
@@ -87,11 +76,17 @@ LayerFaults Rescue::faults_of(int offset, const RunLayer& mask,
     seen[static_cast<std::size_t>(near - offset + 1)] = &compared[near];
   }
   const VoxelLayer& target = *seen[1]->target;
-  LayerFaults out{find_features(seen[0], *seen[1], seen[2], by_.grid),
-                  spurious_print(target, *seen[1]->printed), find_breaks(seen)};
+  LayerFaults out{find_lost_and_fused(seen[0], *seen[1], seen[2], by_.grid),
+                  {},
+                  spurious_print(target, *seen[1]->printed),
+                  find_loose_in_window(seen)};
+  FaultFinder finder(by_.grid.detail_vx[2], {.kinds = {FaultKind::kLost, FaultKind::kFused}});
+  out.faults = finder.add(target, *seen[1]->printed, out.missing);
+  const std::vector<Fault> last = finder.finish();
+  out.faults.insert(out.faults.end(), last.begin(), last.end());
   for (const PrinterModel& model : window_.subspan(1)) {
     const RunLayer more = spurious_print(target, print_with(layers_, offset, model, mask));
-    if (more.count() > 0) out.barren = any_slice({{out.barren, more}});
+    if (more.count() > 0) out.spurious = any_slice({{out.spurious, more}});
   }
   return out;
 }
@@ -128,9 +123,9 @@ void Rescue::search(const FaultsByOffset& before) {
     const auto middle = static_cast<std::ptrdiff_t>(layers_.size() / 2);
     with_stress[static_cast<std::size_t>(middle + offset)] =
         std::make_shared<const InverseLayer>(std::move(layer));
-    for (const RunLayer& slice : faults->gone.lost) places.push_back(&slice);
-    for (const RunLayer& slice : faults->gone.fused) places.push_back(&slice);
-    places.insert(places.end(), {&faults->barren, &faults->breaks.gap, &faults->breaks.loose});
+    for (const RunLayer& slice : faults->missing.lost) places.push_back(&slice);
+    for (const RunLayer& slice : faults->missing.fused) places.push_back(&slice);
+    places.insert(places.end(), {&faults->spurious, &faults->pieces.gap, &faults->pieces.loose});
   }
   std::vector<SearchStart> starts{{}, {.share = 0.5}, {.share = 0.01}};
   for (const int beside : {-1, 1}) {

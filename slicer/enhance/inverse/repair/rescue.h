@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Rescue: a layer that prints well voxel by voxel may still lose a feature, or print it in pieces.
 //
-// Where it does, its mask is searched again with what is missing stressed, from several starts,
+// Where it does, its mask is searched again with those voxels stressed, from several starts,
 // and the mask with the least faults stays. A feature that spans layers is rescued layer after
 // layer, so what a round counts differs: printed at all comes first, then in one piece.
 #pragma once
@@ -15,8 +15,8 @@
 namespace binderjet {
 
 enum class RescueAim {
-  features,  // lost, fused and what is printed where no part is
-  pieces,    // and pieces that the target holds together
+  features,  // lost, fused and spurious
+  pieces,    // and loose
 };
 
 // The middle layer with fewer faults, if it has any and no layer gets worse than with plain masks.

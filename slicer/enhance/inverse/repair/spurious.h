@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What a layer's print has that no part asked for.
+// The spurious print of one layer, as voxels that a mask can be searched without.
 #pragma once
 
 #include "slicer/layers/run_layer.h"
@@ -7,8 +7,8 @@
 
 namespace binderjet {
 
-// The voxels outside the target in boxes around those regions of the print (by sides, within the
-// layer) that hold no voxel of any of the target's slices.
+// The printed voxels outside the target in the boxes of the layer's spurious faults, as the layer
+// shows them by itself: what a layer beside it holds to a part is spurious here, too.
 RunLayer spurious_print(const VoxelLayer& target, const RunLayer& printed);
 
 }  // namespace binderjet

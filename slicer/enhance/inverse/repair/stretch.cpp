@@ -8,8 +8,6 @@
 
 #include "slicer/enhance/inverse/repair/mask_patch.h"
 #include "slicer/enhance/inverse/search/layer_sets.h"
-#include "slicer/score/pieces.h"
-#include "slicer/voxels/any_slice.h"
 
 namespace binderjet {
 namespace {
@@ -28,7 +26,7 @@ PrintedLayer with_print(const SearchModel& by, LayerWindow layers) {
           nullptr};
 }
 
-PrintedLayer with_features(const SearchModel& by, std::span<const Shared<PrintedLayer>> three) {
+PrintedLayer with_missing(const SearchModel& by, std::span<const Shared<PrintedLayer>> three) {
   std::array<ComparedLayer, 3> compared;
   std::array<const ComparedLayer*, 3> seen{};
   for (std::size_t i = 0; i < 3; ++i) {
@@ -37,8 +35,8 @@ PrintedLayer with_features(const SearchModel& by, std::span<const Shared<Printed
     seen[i] = &compared[i];
   }
   PrintedLayer out = *three[1];
-  out.gone =
-      std::make_shared<const LayerFeatures>(find_features(seen[0], compared[1], seen[2], by.grid));
+  out.missing = std::make_shared<const LostAndFused>(
+      find_lost_and_fused(seen[0], compared[1], seen[2], by.grid));
   return out;
 }
 
@@ -61,36 +59,24 @@ bool Stretch::goes_on(const Region& region) const {
          (box_.y1 < whole_.y1 && region.high[1] >= box_.y1);
 }
 
-// As `score` finds them.
+// As `score` finds them, but for joined: no mask of one part tears it from another.
 Stretch::Faults Stretch::faults_of(const Layers& layers) const {
-  const int rz = by_->grid.detail_vx[2];
-  RegionFinder lost;
-  RegionFinder fused;
-  RegionFinder printed;
-  PieceCounter pieces;
+  FaultFinder finder(
+      by_->grid.detail_vx[2],
+      {.kinds = {FaultKind::kLost, FaultKind::kFused, FaultKind::kSpurious, FaultKind::kLoose},
+       .goes_on = [this](const Region& region) { return goes_on(region); }});
   Faults faults;
-  const auto add = [&](const std::vector<Region>& more, std::int64_t weight_each) {
-    for (const Region& region : more) {
-      faults.regions.push_back(region);
-      faults.weight += weight_each + region.voxels;
+  const auto take = [&faults](const std::vector<Fault>& more) {
+    for (const Fault& fault : more) {
+      faults.found.push_back(fault);
+      faults.weight +=
+          (fault.kind == FaultKind::kLoose ? kPieceWeight : kFeatureWeight) + fault.region.voxels;
     }
   };
-  const auto add_spurious = [&](std::vector<Region> more) {
-    for (Region& region : more) region = in_slices(region, rz);
-    std::erase_if(more, [&](const Region& region) { return region.touches || goes_on(region); });
-    add(more, kFeatureWeight);
-  };
   for (const Shared<PrintedLayer>& layer : layers) {
-    for (const RunLayer& slice : layer->gone->lost) add(lost.add(slice), kFeatureWeight);
-    for (const RunLayer& slice : layer->gone->fused) add(fused.add(slice), kFeatureWeight);
-    const RunLayer wanted = any_slice(*layer->layer->target);
-    add_spurious(printed.add(*layer->printed, &wanted));
-    pieces.add(*layer->layer->target, *layer->printed);
+    take(finder.add(*layer->layer->target, *layer->printed, *layer->missing));
   }
-  add(lost.finish(), kFeatureWeight);
-  add(fused.finish(), kFeatureWeight);
-  add_spurious(printed.finish());
-  add(pieces.loose_pieces([&](const Region& region) { return goes_on(region); }), kPieceWeight);
+  take(finder.finish());
   return faults;
 }
 
@@ -109,7 +95,7 @@ void Stretch::look_at(Layers& layers, int k) const {
     return near < 0 || near >= static_cast<int>(layers.size()) ? nullptr : layers[at(near)];
   };
   const std::array three{beside(k - 1), layers[at(k)], beside(k + 1)};
-  layers[at(k)] = std::make_shared<const PrintedLayer>(with_features(*by_, three));
+  layers[at(k)] = std::make_shared<const PrintedLayer>(with_missing(*by_, three));
 }
 
 std::int64_t Stretch::most_wrong(int k) {
@@ -188,7 +174,7 @@ bool Stretch::take(const Patch& patch) {
     auto print_of = std::make_shared<const RunLayer>(print(next, k, &InverseLayer::mask));
     if (wrong_voxels(layer(k), *print_of) > most_wrong(k)) return false;
     next[at(k)] = std::make_shared<const PrintedLayer>(next[at(k)]->layer, std::move(print_of),
-                                                       layers_[at(k)]->gone);
+                                                       layers_[at(k)]->missing);
   }
   const LayerRange seen = grown(prints, 1, count());
   for (int k = seen.first; k < seen.last; ++k) {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // A stretch of layers with their prints, whose masks may be patched as long as that leaves less
-// wrong: features lost, fused and spurious, and pieces that come off.
+// lost, fused, spurious and loose.
 #pragma once
 
 #include <cstdint>
@@ -14,7 +14,7 @@
 #include "slicer/layers/regions.h"
 #include "slicer/layers/run_layer.h"
 #include "slicer/layers/stream.h"
-#include "slicer/score/features.h"
+#include "slicer/score/faults.h"
 
 namespace binderjet {
 
@@ -22,13 +22,14 @@ namespace binderjet {
 struct PrintedLayer {
   Shared<InverseLayer> layer;
   Shared<RunLayer> printed;
-  Shared<LayerFeatures> gone;
+  Shared<LostAndFused> missing;
 };
 
 // The middle layer of a window of window_reach() on each side with its print ...
 PrintedLayer with_print(const SearchModel& by, LayerWindow layers);
-// ... and of three such layers, null beyond the job's ends, the middle one with its features.
-PrintedLayer with_features(const SearchModel& by, std::span<const Shared<PrintedLayer>> three);
+// ... and of three such layers, null beyond the job's ends, the middle one with what of it is lost
+// and fused.
+PrintedLayer with_missing(const SearchModel& by, std::span<const Shared<PrintedLayer>> three);
 
 // Pixels of some layers that get others, counted from the stretch's first layer.
 struct Patch {
@@ -51,7 +52,7 @@ class Stretch {
  public:
   using Layers = std::vector<Shared<PrintedLayer>>;
   struct Faults {
-    std::vector<Region> regions;  // in voxels and slices from the stretch's first
+    std::vector<Fault> found;  // in voxels and slices from the stretch's first
     std::int64_t weight = 0;
   };
 

@@ -7,20 +7,22 @@
 #include <span>
 #include <vector>
 
-#include "slicer/enhance/inverse/search/breaks.h"
+#include "slicer/enhance/inverse/search/loose_in_window.h"
 #include "slicer/layers/run_layer.h"
 #include "slicer/layers/stream.h"
 #include "slicer/model/printer_model.h"
-#include "slicer/score/features.h"
+#include "slicer/score/faults.h"
+#include "slicer/score/lost_and_fused.h"
 #include "slicer/voxels/voxelize.h"
 
 namespace binderjet {
 
 // What is wrong with a layer's print beyond single voxels.
 struct LayerFaults {
-  LayerFeatures gone;  // lost and fused, under the nominal model
-  RunLayer barren;     // must stay powder: printed where no part is, under any model of the window
-  Breaks breaks;       // as the layers beside it show them, under the nominal model
+  LostAndFused missing;       // under the nominal model
+  std::vector<Fault> faults;  // the regions of `missing` within the layer
+  RunLayer spurious;          // under any model of the process window, see spurious_print()
+  LooseInWindow pieces;       // seen from the layers beside it, under the nominal model
 };
 
 // A step changes one or two members, so the members are shared and a copy is cheap.

@@ -14,7 +14,7 @@
 #include "slicer/enhance/rules/mask_rules.h"
 #include "slicer/enhance/rules/rect_cells.h"
 #include "slicer/layers/grid.h"
-#include "slicer/score/features.h"
+#include "slicer/score/lost_and_fused.h"
 
 namespace binderjet {
 

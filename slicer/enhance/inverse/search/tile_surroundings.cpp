@@ -14,14 +14,14 @@ void TileSurroundings::look_at(const LocalDose& dose) {
     if (layer == nullptr) continue;
     for (const RunLayer& slice : layer->target->slices) add_layer(slice, -2, cost);
     for (const Shared<LayerFaults>& faults : layer->stressed) {
-      add_layer(faults->barren, kStress, cost);
+      add_layer(faults->spurious, kStress, cost);
     }
     if (layer->stressed.empty()) continue;
     Plane<int>& stressed = stressed_[offset] = cost;
     for (const Shared<LayerFaults>& faults : layer->stressed) {
-      for (const RunLayer& slice : faults->gone.lost) add_layer(slice, -kStress, stressed);
-      for (const RunLayer& slice : faults->gone.fused) add_layer(slice, kStress, stressed);
-      add_layer(faults->breaks.gap, -kStress, stressed);
+      for (const RunLayer& slice : faults->missing.lost) add_layer(slice, -kStress, stressed);
+      for (const RunLayer& slice : faults->missing.fused) add_layer(slice, kStress, stressed);
+      add_layer(faults->pieces.gap, -kStress, stressed);
     }
   }
   for (const int offset : offsets_.masks) {

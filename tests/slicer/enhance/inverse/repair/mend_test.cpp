@@ -45,7 +45,7 @@ Stretch::Layers printed(const InverseSolver& solver, const Volume& target, const
   Stretch::Layers out;
   for (int k = 0; k < masks.nz; ++k) {
     const std::array three{layer_at(prints, k - 1), layer_at(prints, k), layer_at(prints, k + 1)};
-    out.push_back(std::make_shared<const PrintedLayer>(with_features(solver.by(), three)));
+    out.push_back(std::make_shared<const PrintedLayer>(with_missing(solver.by(), three)));
   }
   return out;
 }
@@ -86,8 +86,8 @@ TEST(Mend, AMissingStretchOfATowerComesBack) {
   const InverseSolver by = solver();
   const Stretch::Layers before = printed(by, tower(), masks_with_a_gap(), 2);
   // The layers above the gap; what is missing itself is worn by the layers beside it.
-  ASSERT_EQ(faults(by, before).regions.size(), 1U);
-  EXPECT_TRUE(faults(by, mended(by.by(), before, {0, kLayers}, kLayers)).regions.empty());
+  ASSERT_EQ(faults(by, before).found.size(), 1U);
+  EXPECT_TRUE(faults(by, mended(by.by(), before, {0, kLayers}, kLayers)).found.empty());
 }
 
 TEST(Mend, OnlyItsOwnLayersChange) {
@@ -106,8 +106,8 @@ TEST(Mend, WhatPrintsWhereNoPartIsGoes) {
   for (int y = 25; y < 30; ++y)
     for (int x = 25; x < 30; ++x) masks.set(x, y, 8, true);
   const Stretch::Layers before = printed(by, tower(), masks, 2);
-  ASSERT_EQ(faults(by, before).regions.size(), 1U);
-  EXPECT_TRUE(faults(by, mended(by.by(), before, {0, kLayers}, kLayers)).regions.empty());
+  ASSERT_EQ(faults(by, before).found.size(), 1U);
+  EXPECT_TRUE(faults(by, mended(by.by(), before, {0, kLayers}, kLayers)).found.empty());
 }
 
 TEST(Mend, ASoundStretchStaysAsItIs) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "slicer/score/features.h"
+#include "slicer/score/lost_and_fused.h"
 
 #include <algorithm>
 #include <array>
@@ -133,9 +133,10 @@ RunLayer wear_across_rows(const Material& material, const RunLayer& slice, const
   return out;
 }
 
-std::vector<RunLayer> vanished(const Material& material, const ComparedLayer* below,
-                               const ComparedLayer& layer, const ComparedLayer* above,
-                               const Grid& grid) {
+// What is neither printed nor worn.
+std::vector<RunLayer> missing(const Material& material, const ComparedLayer* below,
+                              const ComparedLayer& layer, const ComparedLayer* above,
+                              const Grid& grid) {
   std::vector<RunLayer> open = unprinted(material, below, layer, above);
   // Whole voxels, spread evenly over the steps, so that a path may run aslant.
   const std::array<int, 2> reach{static_cast<int>(kWornMm / grid.voxel_mm(0)),
@@ -156,11 +157,11 @@ std::vector<RunLayer> vanished(const Material& material, const ComparedLayer* be
 
 }  // namespace
 
-LayerFeatures find_features(const ComparedLayer* below, const ComparedLayer& layer,
-                            const ComparedLayer* above, const Grid& grid) {
+LostAndFused find_lost_and_fused(const ComparedLayer* below, const ComparedLayer& layer,
+                                 const ComparedLayer* above, const Grid& grid) {
   const int width = layer.printed->width();
-  return {vanished(Material(false, width), below, layer, above, grid),
-          vanished(Material(true, width), below, layer, above, grid)};
+  return {missing(Material(false, width), below, layer, above, grid),
+          missing(Material(true, width), below, layer, above, grid)};
 }
 
 }  // namespace binderjet

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Where a print falls apart that the target holds together.
-#include "slicer/enhance/inverse/search/breaks.h"
+// Loose pieces, and where a bridge to them could be.
+#include "slicer/enhance/inverse/search/loose_in_window.h"
 
 #include <gtest/gtest.h>
 
@@ -23,44 +23,45 @@ ComparedLayer layer_of(const RunLayer& target, const RunLayer& printed) {
           std::make_shared<const RunLayer>(printed)};
 }
 
-Breaks found(const ComparedLayer* below, const ComparedLayer& layer, const ComparedLayer* above) {
+LooseInWindow found(const ComparedLayer* below, const ComparedLayer& layer,
+                    const ComparedLayer* above) {
   const std::array<const ComparedLayer*, 3> window{below, &layer, above};
-  return find_breaks(window);
+  return find_loose_in_window(window);
 }
 
 const RunLayer kNothing = RunLayer::powder(kWidth, 3);
 
-TEST(Breaks, ALineThatPrintsInTwoPiecesHasOneAndAGapToBridge) {
+TEST(LooseInWindow, ALineThatPrintsInTwoPiecesHasOneAndAGapToBridge) {
   const ComparedLayer line =
       layer_of(rows_of({{}, {2, 18}, {}}), rows_of({{}, {2, 9, 11, 14}, {}}));
-  const Breaks breaks = found(nullptr, line, nullptr);
-  EXPECT_EQ(breaks.count, 1);
-  EXPECT_EQ(breaks.loose, rows_of({{}, {11, 14}, {}}));
+  const LooseInWindow pieces = found(nullptr, line, nullptr);
+  EXPECT_EQ(pieces.count, 1);
+  EXPECT_EQ(pieces.loose, rows_of({{}, {11, 14}, {}}));
   // What is missing near the smaller piece.
-  EXPECT_EQ(breaks.gap, rows_of({{}, {9, 11, 14, 18}, {}}));
+  EXPECT_EQ(pieces.gap, rows_of({{}, {9, 11, 14, 18}, {}}));
 }
 
-TEST(Breaks, APieceHeldByTheLayerAboveIsNone) {
+TEST(LooseInWindow, APieceHeldByTheLayerAboveIsNone) {
   const RunLayer whole = rows_of({{}, {2, 18}, {}});
   const ComparedLayer line = layer_of(whole, rows_of({{}, {2, 9, 11, 14}, {}}));
   const ComparedLayer above = layer_of(whole, whole);
-  const Breaks breaks = found(nullptr, line, &above);
-  EXPECT_EQ(breaks.count, 0);
-  EXPECT_EQ(breaks.loose, kNothing);
-  EXPECT_EQ(breaks.gap, kNothing);
+  const LooseInWindow pieces = found(nullptr, line, &above);
+  EXPECT_EQ(pieces.count, 0);
+  EXPECT_EQ(pieces.loose, kNothing);
+  EXPECT_EQ(pieces.gap, kNothing);
 }
 
-TEST(Breaks, ALayerThatDoesNotPrintHasTheGap) {
+TEST(LooseInWindow, ALayerThatDoesNotPrintHasTheGap) {
   const RunLayer pin = rows_of({{}, {4, 8}, {}});
   const ComparedLayer below = layer_of(pin, pin);
   const ComparedLayer above = layer_of(pin, rows_of({{}, {4, 7}, {}}));
-  const Breaks breaks = found(&below, layer_of(pin, kNothing), &above);
-  EXPECT_EQ(breaks.count, 1);
-  EXPECT_EQ(breaks.loose, kNothing);
-  EXPECT_EQ(breaks.gap, pin);
+  const LooseInWindow pieces = found(&below, layer_of(pin, kNothing), &above);
+  EXPECT_EQ(pieces.count, 1);
+  EXPECT_EQ(pieces.loose, kNothing);
+  EXPECT_EQ(pieces.gap, pin);
 }
 
-TEST(Breaks, TwoPartsAreNoneWhetherTheyPrintApartOrTogether) {
+TEST(LooseInWindow, TwoPartsAreNoneWhetherTheyPrintApartOrTogether) {
   const RunLayer parts = rows_of({{}, {2, 6, 10, 14}, {}});
   EXPECT_EQ(found(nullptr, layer_of(parts, parts), nullptr).count, 0);
   EXPECT_EQ(found(nullptr, layer_of(parts, rows_of({{}, {2, 14}, {}})), nullptr).count, 0);

@@ -1,8 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Lost, fused and spurious features of volumes that a person can draw on paper.
-#include "slicer/score/features.h"
+// The faults of volumes that a person can draw on paper.
+#include "slicer/score/faults.h"
 
 #include <gtest/gtest.h>
+
+#include <string>
+#include <utility>
+#include <vector>
 
 #include "tests/support/random.h"
 #include "tests/support/score_volumes.h"
@@ -31,13 +35,13 @@ Volume printed_of(int nx, int ny, int layers, Solid solid) {
   return v;
 }
 
-void expect_counts(const Score& score, int lost, int fused, int spurious) {
-  EXPECT_EQ(score.lost(), lost);
-  EXPECT_EQ(score.fused(), fused);
-  EXPECT_EQ(score.spurious(), spurious);
+void expect_counts(const JobScore& score, int lost, int fused, int spurious) {
+  EXPECT_EQ(score.faults[FaultKind::kLost], lost);
+  EXPECT_EQ(score.faults[FaultKind::kFused], fused);
+  EXPECT_EQ(score.faults[FaultKind::kSpurious], spurious);
 }
 
-TEST(Features, CountAPinThatVanishesAsOneLost) {
+TEST(Faults, CountAPinThatVanishesAsOneLost) {
   const auto base = [](int x, int y, int k) {
     return k < 2 && x >= 2 && x < 20 && y >= 2 && y < 20;
   };
@@ -49,13 +53,13 @@ TEST(Features, CountAPinThatVanishesAsOneLost) {
   const auto result = score(target, printed_of(22, 22, 7, base), kGrid);
   expect_counts(result.score, 1, 0, 0);
   // The layer that stands on the base is worn, the other four are lost.
-  const Region region = result.features.front().region;
+  const Region region = result.faults.front().region;
   EXPECT_EQ(region.low, (std::array<int, 3>{8, 9, 6}));
   EXPECT_EQ(region.high, (std::array<int, 3>{12, 12, 14}));
   EXPECT_EQ(region.voxels, 4 * 3 * 8);
 }
 
-TEST(Features, CountASlotThatClosesAsOneFused) {
+TEST(Faults, CountASlotThatClosesAsOneFused) {
   const auto block = [](int x, int y, int) { return x >= 3 && x < 27 && y >= 3 && y < 27; };
   const auto slot = [](int x, int, int) { return x >= 13 && x < 17; };
   const Volume target =
@@ -63,12 +67,12 @@ TEST(Features, CountASlotThatClosesAsOneFused) {
   const auto result = score(target, printed_of(30, 30, 5, block), kGrid);
   expect_counts(result.score, 0, 1, 0);
   // It is open at both ends, below and above: two voxels and a layer there are only worn.
-  const Region region = result.features.front().region;
+  const Region region = result.faults.front().region;
   EXPECT_EQ(region.low, (std::array<int, 3>{13, 5, 2}));
   EXPECT_EQ(region.high, (std::array<int, 3>{17, 25, 8}));
 }
 
-TEST(Features, CountALonePrintedCrumbAsOneSpurious) {
+TEST(Faults, CountALonePrintedCrumbAsOneSpurious) {
   const auto block = [](int x, int, int) { return x >= 3 && x < 9; };
   const Volume target = target_of(20, 6, 3, block);
   const auto result = score(target,
@@ -78,10 +82,10 @@ TEST(Features, CountALonePrintedCrumbAsOneSpurious) {
                                        }),
                             kGrid);
   expect_counts(result.score, 0, 0, 1);
-  EXPECT_EQ(result.features.front().region.voxels, 2 * 2) << "two layers of two slices";
+  EXPECT_EQ(result.faults.front().region.voxels, 2 * 2) << "two layers of two slices";
 }
 
-TEST(Features, CountAsSpuriousOnlyWhatHoldsNoTargetInAnySlice) {
+TEST(Faults, CountAsSpuriousOnlyWhatHoldsNoTargetInAnySlice) {
   // The target fills only the upper slice of its first layer.
   Volume target(20, 6, 4);
   target.fill([](int x, int, int z) { return x >= 3 && x < 9 && z == 1; });
@@ -93,7 +97,7 @@ TEST(Features, CountAsSpuriousOnlyWhatHoldsNoTargetInAnySlice) {
       0, 0, 0);
 }
 
-TEST(Features, CountAThinnedWallAndAThickenedOneAsNone) {
+TEST(Faults, CountAThinnedWallAndAThickenedOneAsNone) {
   const auto wall = [](int from, int to) {
     return [=](int x, int, int) { return x >= from && x < to; };
   };
@@ -102,7 +106,7 @@ TEST(Features, CountAThinnedWallAndAThickenedOneAsNone) {
   expect_counts(score(target, printed_of(30, 30, 4, wall(8, 20)), kGrid).score, 0, 0, 0);
 }
 
-TEST(Features, CountAWallThatIsGoneAsOneLostBesideOneThatIsThere) {
+TEST(Faults, CountAWallThatIsGoneAsOneLostBesideOneThatIsThere) {
   const auto wall = [](int x, int, int) { return x >= 3 && x < 7; };
   const Volume target = target_of(30, 12, 4, [&](int x, int y, int k) {
     return wall(x, y, k) || (x >= 9 && x < 11);  // two voxels away: near, but another wall
@@ -110,7 +114,7 @@ TEST(Features, CountAWallThatIsGoneAsOneLostBesideOneThatIsThere) {
   expect_counts(score(target, printed_of(30, 12, 4, wall), kGrid).score, 1, 0, 0);
 }
 
-TEST(Features, CountABrokenSpikeOnlyIfMoreThanWearIsGone) {
+TEST(Faults, CountABrokenSpikeOnlyIfMoreThanWearIsGone) {
   const auto spike = [](int length) {
     return [=](int x, int y, int) {
       return (x >= 2 && x < 10) || (y >= 8 && y < 10 && x >= 10 && x < 10 + length);
@@ -121,7 +125,7 @@ TEST(Features, CountABrokenSpikeOnlyIfMoreThanWearIsGone) {
   expect_counts(score(target, printed_of(24, 18, 3, spike(7)), kGrid).score, 1, 0, 0);
 }
 
-TEST(Features, CountASkinThatALayerTooFewLeavesAsNone) {
+TEST(Faults, CountASkinThatALayerTooFewLeavesAsNone) {
   const auto block = [](int x, int y, int k) {
     return k < 4 && x >= 2 && x < 18 && y >= 2 && y < 18;
   };
@@ -130,11 +134,88 @@ TEST(Features, CountASkinThatALayerTooFewLeavesAsNone) {
   expect_counts(score(target, printed_of(20, 20, 5, lower), kGrid).score, 0, 0, 0);
 }
 
-TEST(Features, CountWhatIsDiagonallyApartTwice) {
+TEST(Faults, CountWhatIsDiagonallyApartTwice) {
   const Volume target = target_of(20, 20, 3, [](int x, int y, int k) {
     return (k < 2 && x < 5 && y < 5) || (k < 2 && x >= 5 && y >= 5 && x < 9 && y < 9);
   });
   expect_counts(score(target, Volume(20, 20, 3), kGrid).score, 2, 0, 0);
+}
+
+// The rows of the picture in faults.h, as blocks of 11 rows and 5 layers.
+const std::string kTwoParts = ".####...##########..";
+
+Volume block_of(const std::string& row, int slices) {
+  Volume v(static_cast<int>(row.size()), 11, slices);
+  v.fill([&](int x, int, int) { return row[static_cast<std::size_t>(x)] == '#'; });
+  return v;
+}
+
+std::vector<Fault> found(const std::string& target, const std::string& printed, FaultScope scope) {
+  const Volume wanted = block_of(target, 10);
+  const Volume print = block_of(printed, 5);
+  const auto layers = score_layers(whole::voxel_stream(wanted, 2, {0, 5}),
+                                   whole::layer_stream(print), kGrid, {0, 5})
+                          ->next(5);
+  FaultFinder finder(2, std::move(scope));
+  std::vector<Fault> all;
+  const auto take = [&](const std::vector<Fault>& faults) {
+    all.insert(all.end(), faults.begin(), faults.end());
+  };
+  for (const auto& layer : layers) {
+    take(finder.add(*layer->layer.target, *layer->layer.printed, layer->missing));
+  }
+  take(finder.finish());
+  return all;
+}
+
+std::vector<std::string> words(const std::vector<Fault>& faults) {
+  std::vector<std::string> out;
+  for (const Fault& fault : faults) out.emplace_back(word(fault.kind));
+  return out;
+}
+
+using Words = std::vector<std::string>;
+
+TEST(Faults, AreOfTheFiveKindsThatTheHeaderDraws) {
+  EXPECT_EQ(words(found(kTwoParts, kTwoParts, {})), Words{});
+  EXPECT_EQ(words(found(kTwoParts, ".####...............", {})), Words{"lost"});
+  EXPECT_EQ(words(found(kTwoParts, ".#################..", {})), (Words{"fused", "joined"}));
+  EXPECT_EQ(words(found(kTwoParts, ".####...##########.#", {})), Words{"spurious"});
+  EXPECT_EQ(words(found(kTwoParts, ".####...#####..###..", {})), Words{"loose"});
+}
+
+TEST(Faults, AreFoundOfTheKindsThatAreAskedForOnly) {
+  const std::string all_at_once = ".#########..##.....#";  // the second part's end is lost, too
+  EXPECT_EQ(words(found(kTwoParts, all_at_once, {})),
+            (Words{"lost", "fused", "spurious", "loose", "joined"}));
+  for (const FaultKind kind : kFaultKinds) {
+    EXPECT_EQ(words(found(kTwoParts, all_at_once, {.kinds = {kind}})),
+              Words{std::string(word(kind))});
+  }
+}
+
+TEST(Faults, CountSlicesFromTheJobsFirstWhereAPieceOfAJobBeginsHigher) {
+  const std::string all_at_once = ".#########..##.....#";
+  const std::vector<Fault> low = found(kTwoParts, all_at_once, {});
+  const std::vector<Fault> high = found(kTwoParts, all_at_once, {.first_layer = 7});
+  ASSERT_EQ(low.size(), 5);
+  ASSERT_EQ(high.size(), 5);
+  for (std::size_t i = 0; i < low.size(); ++i) {
+    EXPECT_EQ(high[i].region.low[2], low[i].region.low[2] + 14) << word(low[i].kind);
+    EXPECT_EQ(high[i].region.high[2], low[i].region.high[2] + 14) << word(low[i].kind);
+  }
+}
+
+TEST(Faults, AreNeitherSpuriousNorLooseWhereTheyMayGoOn) {
+  const auto at_the_end = [](const Region& region) { return region.high[0] == 20; };
+  EXPECT_EQ(words(found(kTwoParts, ".####...##########.#", {.goes_on = at_the_end})), Words{});
+  // The last piece of this part is the lesser one, and stays: the others come off it.
+  const std::string part = "..##################";
+  const std::string printed = "..#####..######..###";
+  EXPECT_EQ(found(part, printed, {}).size(), 2);
+  const std::vector<Fault> loose = found(part, printed, {.goes_on = at_the_end});
+  EXPECT_EQ(words(loose), (Words{"loose", "loose"}));
+  for (const Fault& fault : loose) EXPECT_LT(fault.region.high[0], 20);
 }
 
 // The definition voxel by voxel on a whole volume: what is neither printed nor worn.
@@ -172,7 +253,7 @@ Volume lost_voxels(const Volume& target, const Volume& printed, const Grid& grid
   return lost;
 }
 
-TEST(Features, LoseTheVoxelsThatTheDefinitionSays) {
+TEST(Faults, LoseTheVoxelsThatTheDefinitionSays) {
   Random random;
   std::int64_t found = 0;
   for (int round = 0; round < 200; ++round) {
@@ -186,7 +267,7 @@ TEST(Features, LoseTheVoxelsThatTheDefinitionSays) {
                                      whole::layer_stream(printed), grid, {0, layers});
     std::vector<Shared<RunLayer>> slices;
     for (const auto& layer : stream->next(layers)) {
-      for (const RunLayer& slice : layer->features.lost) {
+      for (const RunLayer& slice : layer->missing.lost) {
         slices.push_back(std::make_shared<const RunLayer>(slice));
         found += slice.count();
       }
@@ -197,7 +278,7 @@ TEST(Features, LoseTheVoxelsThatTheDefinitionSays) {
 }
 
 // Fused in powder is lost in solid: inside a thick block, the complements change places.
-TEST(Features, AreTheSameForPowderAsForSolid) {
+TEST(Faults, AreTheSameForPowderAsForSolid) {
   Random random;
   int found = 0;
   for (int round = 0; round < 100; ++round) {
@@ -215,9 +296,9 @@ TEST(Features, AreTheSameForPowderAsForSolid) {
     not_printed.fill([&](int x, int y, int z) { return printed.at(x, y, z) == 0; });
     const auto solid = score(target, printed, kGrid, 2);
     const auto powder = score(not_target, not_printed, kGrid);
-    ASSERT_EQ(solid.score.lost(), powder.score.fused());
-    const auto lost = solid.regions(FeatureKind::kLost);
-    const auto fused = powder.regions(FeatureKind::kFused);
+    ASSERT_EQ(solid.score.faults[FaultKind::kLost], powder.score.faults[FaultKind::kFused]);
+    const auto lost = solid.regions(FaultKind::kLost);
+    const auto fused = powder.regions(FaultKind::kFused);
     ASSERT_EQ(lost.size(), fused.size());
     for (std::size_t i = 0; i < lost.size(); ++i) {
       ASSERT_EQ(lost[i].low, fused[i].low);
