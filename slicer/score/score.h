@@ -7,8 +7,8 @@
 #include <vector>
 
 #include "slicer/layers/grid.h"
+#include "slicer/layers/pipeline.h"
 #include "slicer/layers/regions.h"
-#include "slicer/layers/stream.h"
 #include "slicer/score/edge_error.h"
 #include "slicer/score/features.h"
 #include "slicer/score/pieces.h"
@@ -24,6 +24,8 @@ struct LayerScore {
   LayerFeatures features;
 };
 
+// Each layer from its neighbors; beyond the ends of what is compared is powder.
+Pipeline<LayerScore> score_steps(const Pipeline<ComparedLayer>& compared, const Grid& grid);
 // Both streams begin with the first layer of `layers` and end with its last; beyond is powder.
 std::unique_ptr<Stream<LayerScore>> score_layers(std::unique_ptr<Stream<VoxelLayer>> target,
                                                  std::unique_ptr<Stream<RunLayer>> printed,
