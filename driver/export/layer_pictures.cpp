@@ -18,11 +18,7 @@ enum Color : std::uint8_t { kPowder, kCorrect, kMissing, kExtra };
 constexpr std::array<Rgb, 4> kPalette{kPowderColor, kCorrectColor, kMissingColor, kExtraColor};
 
 RunLayer predicted(const PrinterModel& model, const MeasuredJob& job, int index) {
-  std::vector<const RunLayer*> window;
-  for (int k = index - model.window_reach(); k <= index + model.window_reach(); ++k) {
-    const bool there = k >= 0 && k < job.layers();
-    window.push_back(there ? job.masks[static_cast<std::size_t>(k)].get() : nullptr);
-  }
+  const RunWindow window = runs_around(job.masks, index, model.window_reach());
   return model.print(window, job.first_layer + index);
 }
 

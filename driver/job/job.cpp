@@ -11,10 +11,8 @@
 #include "driver/base/files.h"
 #include "slicer/base/error.h"
 #include "slicer/base/strict_json.h"
-#include "slicer/enhance/inverse/inverse_solver.h"
 #include "slicer/mesh/read/read_mesh.h"
 #include "slicer/mesh/repair.h"
-#include "slicer/model/process_window.h"
 
 namespace binderjet {
 namespace {
@@ -87,23 +85,6 @@ std::string to_text(const JobHeader& header) {
   if (header.enhance == "inverse") json["robust"] = header.robust;
   if (header.color) json["color"] = {{"enhanced", header.color_enhanced}};
   return json.dump();
-}
-
-std::unique_ptr<Stream<MaskLayer>> mask_stream(const JobHeader& header,
-                                               std::shared_ptr<const Mesh> mesh,
-                                               LayerRange layers) {
-  if (header.enhance == "none")
-    return plain_masks(std::move(mesh), header.grid, header.box, layers);
-  const JobPlace place = place_of(header.box, header.grid);
-  if (header.enhance == "inverse") {
-    std::vector<PrinterModel> window = process_window(header.profile.effects, header.grid, place);
-    if (!header.robust) window.resize(1, window.front());
-    auto solver =
-        std::make_shared<const InverseSolver>(std::move(window), header.grid, header.profile.mask);
-    return inverse_masks(std::move(mesh), header.grid, header.box, layers, solver);
-  }
-  auto model = std::make_shared<const PrinterModel>(header.profile.effects, header.grid, place);
-  return paper_masks(std::move(mesh), header.grid, header.box, layers, model, header.passes);
 }
 
 JobHeader parse_job_header(const std::string& text, const std::string& where) {

@@ -10,7 +10,6 @@
 
 #include "driver/profile/profile.h"
 #include "slicer/color/color.h"
-#include "slicer/enhance/masks.h"
 #include "slicer/layers/grid.h"
 #include "slicer/mesh/mesh.h"
 #include "slicer/mesh/paint.h"
@@ -44,9 +43,6 @@ struct JobHeader {
 
 // One JSON object; the same header gives the same bytes.
 std::string to_text(const JobHeader& header);
-// The masks of `layers` as the job enhances them, from its parts as one mesh.
-std::unique_ptr<Stream<MaskLayer>> mask_stream(const JobHeader& header,
-                                               std::shared_ptr<const Mesh> mesh, LayerRange layers);
 
 // `where` names the job in messages. Error{kBadInput} if this is no header of ours.
 JobHeader parse_job_header(const std::string& text, const std::string& where);

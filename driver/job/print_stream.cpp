@@ -3,15 +3,34 @@
 
 #include <oneapi/tbb/parallel_for.h>
 
+#include <utility>
+
+#include "driver/job/job_masks.h"
+#include "slicer/model/print_masks.h"
+
 namespace binderjet {
+
+Pipeline<RunLayer> printed_layers(const MaskSource& masks, const PrinterModel& model) {
+  const Pipeline<RunLayer> read("read masks", masks.layers(),
+                                [&masks](LayerRange) { return masks.stream(); });
+  // Not owned: the model outlives this.
+  return print_masks(read, {std::shared_ptr<const void>(), &model});
+}
 
 std::unique_ptr<Stream<RunLayer>> printed_stream(const MaskSource& masks,
                                                  const PrinterModel& model) {
-  using Print = Step<RunLayer, RunLayer>;
-  const LayerRange layers = masks.layers();
-  return std::make_unique<Print>(
-      masks.stream(), layers, model.window_reach(), layers,
-      [&model](int layer, Print::Window window) { return model.print(window, layer); });
+  return printed_layers(masks, model).all_layers();
+}
+
+Pipeline<RunLayer> printed_job(const JobHeader& header, std::shared_ptr<const Mesh> mesh,
+                               std::shared_ptr<const PrinterModel> model,
+                               std::shared_ptr<MaskTally> tally) {
+  const auto count = [tally = std::move(tally)](int, const Window<MaskLayer>& window) {
+    tally->pixels += window.middle().mask.count();
+    return window.middle().mask;
+  };
+  return print_masks(job_masks(header, std::move(mesh)).then("count pixels", {}, count),
+                     std::move(model));
 }
 
 void write_printed(const MaskSource& masks, const PrinterModel& model, const Grid& grid,

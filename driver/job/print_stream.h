@@ -1,22 +1,36 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What the printer model makes of masks, streamed, and written as a slice stack.
+// What the printer model makes of masks, of a job that is there or of one that is being sliced:
+// streamed, and written as a slice stack.
 #pragma once
 
+#include <atomic>
+#include <cstdint>
 #include <memory>
 #include <string>
 
 #include "driver/base/console.h"
 #include "driver/job/mask_source.h"
+#include "slicer/layers/pipeline.h"
 #include "slicer/model/printer_model.h"
 
 namespace binderjet {
 
 // The printed voxels of each mask; layers that the source lacks are powder. Source and model must
-// outlive the stream.
+// outlive what is made of them.
+Pipeline<RunLayer> printed_layers(const MaskSource& masks, const PrinterModel& model);
 std::unique_ptr<Stream<RunLayer>> printed_stream(const MaskSource& masks,
                                                  const PrinterModel& model);
 
-// Writes them to `folder`, at the voxel pitch in x and y and one image per layer.
+// What is counted of masks on their way into the printer model, on several threads.
+struct MaskTally {
+  std::atomic<std::int64_t> pixels = 0;
+};
+// The same of a job that is being sliced; `mesh` is its parts as one.
+Pipeline<RunLayer> printed_job(const JobHeader& header, std::shared_ptr<const Mesh> mesh,
+                               std::shared_ptr<const PrinterModel> model,
+                               std::shared_ptr<MaskTally> tally);
+
+// Writes printed layers to `folder`, at the voxel pitch in x and y and one image per layer.
 void write_printed(const MaskSource& masks, const PrinterModel& model, const Grid& grid,
                    const std::string& folder, const Console& console);
 

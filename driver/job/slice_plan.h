@@ -10,6 +10,7 @@
 #include "driver/base/console.h"
 #include "driver/job/estimate.h"
 #include "driver/job/job.h"
+#include "slicer/layers/pipeline.h"
 
 namespace CLI {
 class App;
@@ -50,10 +51,8 @@ struct SlicePlan {
 // Reads and places the parts; says the warnings.
 SlicePlan plan_slices(const SliceOptions& options, const Console& console);
 
-// The records of these layers, as they are asked for.
-std::unique_ptr<Stream<EncodedLayer>> encoded_layers(const JobHeader& header,
-                                                     std::shared_ptr<const Mesh> mesh,
-                                                     std::shared_ptr<const ColorField> color,
-                                                     LayerRange layers);
+// The records of the job's layers.
+Pipeline<EncodedLayer> encoded_layers(const JobHeader& header, std::shared_ptr<const Mesh> mesh,
+                                      std::shared_ptr<const ColorField> color);
 
 }  // namespace binderjet

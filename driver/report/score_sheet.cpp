@@ -9,6 +9,7 @@
 #include <nlohmann/json.hpp>
 #include <utility>
 
+#include "driver/job/job_masks.h"
 #include "driver/job/print_stream.h"
 #include "slicer/voxels/voxelize.h"
 
@@ -88,7 +89,7 @@ MaskSource enhanced_masks(const MaskSource& job, JobHeader header,
                           const std::shared_ptr<const Mesh>& target, const Console& console) {
   constexpr int kPaperPasses = 2;
   if (header.enhance == "paper" && header.passes == 0) header.passes = kPaperPasses;
-  const auto stream = mask_stream(header, target, job.layers());
+  const auto stream = job_masks(header, target).layers(job.layers());
   Progress progress(console, "enhancing (" + header.enhance + ")", job.size_px[2]);
   const auto layers = std::make_shared<std::vector<RunLayer>>();
   while (stream->rest().size() > 0) {

@@ -87,7 +87,7 @@ class ComputedLayers : public LayerSource {
   void compute(const JobHeader& header, const std::shared_ptr<const Mesh>& mesh,
                const std::shared_ptr<const ColorField>& color, int first) {
     try {
-      const auto stream = encoded_layers(header, mesh, color, {first, header.layers()});
+      const auto stream = encoded_layers(header, mesh, color).layers({first, header.layers()});
       while (stream->rest().size() > 0) {
         for (const Shared<EncodedLayer>& layer : stream->next(kStreamBlock)) {
           if (!queue_.push(layer->record)) return;

@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
-#include <atomic>
 #include <map>
 #include <memory>
 #include <nlohmann/json.hpp>
@@ -13,10 +12,10 @@
 #include <vector>
 
 #include "driver/job/estimate.h"
+#include "driver/job/print_stream.h"
 #include "driver/job/slice_plan.h"
 #include "driver/report/located_faults.h"
 #include "driver/verbs/verbs.h"
-#include "slicer/enhance/masks.h"
 #include "slicer/model/printer_model.h"
 #include "slicer/score/score.h"
 #include "slicer/score/trapped_powder.h"
@@ -71,26 +70,6 @@ struct Kind {
   }
 };
 
-// The job's masks, printed; counts their pixels on the way.
-std::unique_ptr<Stream<RunLayer>> prints_of(const SlicePlan& plan,
-                                            std::shared_ptr<const PrinterModel> model,
-                                            std::shared_ptr<std::atomic<std::int64_t>> mask_px) {
-  const LayerRange all{0, plan.header.layers()};
-  using Take = Step<MaskLayer, RunLayer>;
-  auto masks =
-      std::make_unique<Take>(mask_stream(plan.header, plan.mesh, all), all, 0, plan.header.layers(),
-                             [mask_px = std::move(mask_px)](int, Take::Window window) {
-                               *mask_px += window[0]->mask.count();
-                               return window[0]->mask;
-                             });
-  using Print = Step<RunLayer, RunLayer>;
-  const int reach = model->window_reach();
-  return std::make_unique<Print>(std::move(masks), all, reach, plan.header.layers(),
-                                 [model = std::move(model)](int layer, Print::Window window) {
-                                   return model->print(window, layer);
-                                 });
-}
-
 struct Checked {
   std::map<FaultKind, Kind> faults;
   Kind trapped;
@@ -103,9 +82,10 @@ Checked check_plan(const SlicePlan& plan, const Console& console) {
   const LayerRange all{0, header.layers()};
   const auto model = std::make_shared<const PrinterModel>(header.profile.effects, header.grid,
                                                           place_of(header.box, header.grid));
-  const auto mask_px = std::make_shared<std::atomic<std::int64_t>>(0);
-  const auto layers = score_layers(voxelize(plan.mesh, header.grid, header.box, all),
-                                   prints_of(plan, model, mask_px), header.grid, all);
+  const auto tally = std::make_shared<MaskTally>();
+  const auto layers =
+      score_layers(voxelize(plan.mesh, header.grid, header.box, all),
+                   printed_job(header, plan.mesh, model, tally).all_layers(), header.grid, all);
   Checked checked;
   Scorer scorer(header.grid, 0);
   TrappedPowder powder;
@@ -126,7 +106,7 @@ Checked check_plan(const SlicePlan& plan, const Console& console) {
   const JobScore score = scorer.finish();
   take(score.last_faults);
   checked.excess = score.voxels.excess();
-  checked.totals.mask_px = *mask_px;
+  checked.totals.mask_px = tally->pixels;
   checked.totals.target_vx = score.voxels.solid;
   return checked;
 }

@@ -27,7 +27,8 @@ struct ExplainOptions {
 // The pixel's layer and those that its print depends on, with their masks in the job.
 std::vector<Shared<InverseLayer>> window_of(const MaskSource& job, int layer, int reach) {
   const JobHeader& header = *job.header;
-  const LayerRange range = grown({layer, layer + 1}, reach, header.layers());
+  const LayerRange range =
+      grown({layer, layer + 1}, LayerReach::both_sides(reach), {0, header.layers()});
   const auto mesh = reload_parts(header, std::filesystem::path(job.path).parent_path().string());
   const auto targets = voxelize(mesh, header.grid, header.box, range)->next(range.size());
   std::vector<Shared<InverseLayer>> window;

@@ -26,7 +26,7 @@ void slice(const SliceOptions& options, std::optional<int> threads, const Consol
   const LayerRange range = layer_range(options.layers, plan.header.layers());
   JobWriter writer = value_or_throw(JobWriter::create(options.out, to_text(plan.header)));
   Progress progress(console, "slicing", range.size());
-  const auto stream = encoded_layers(plan.header, plan.mesh, plan.color, range);
+  const auto stream = encoded_layers(plan.header, plan.mesh, plan.color).layers(range);
   Totals totals;
   while (stream->rest().size() > 0) {
     for (const Shared<EncodedLayer>& layer : stream->next(kBlockLayers)) {

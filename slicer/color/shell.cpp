@@ -64,7 +64,7 @@ void put(std::byte* out, std::uint32_t color) {
 // Rows of one layer, with what the skins within reach say about them.
 class Shell::Band {
  public:
-  Band(const Shell& shell, int layer, std::span<const Shared<SkinLayer>> window)
+  Band(const Shell& shell, int layer, const Window<SkinLayer>& window)
       : shell_(shell),
         layer_(layer),
         window_(window),
@@ -112,9 +112,7 @@ class Shell::Band {
     std::vector<std::vector<Stretch>> stretches;
   };
 
-  const SkinLayer* skin(int offset) const {
-    return window_[static_cast<std::size_t>(offset + shell_.reach_[2])].get();
-  }
+  const SkinLayer* skin(int offset) const { return window_.at(offset); }
 
   // Nearest layers first, so the first skin in a column is the nearest.
   void gather_z(int y, int row) {
@@ -275,7 +273,7 @@ class Shell::Band {
 
   const Shell& shell_;
   int layer_;
-  std::span<const Shared<SkinLayer>> window_;
+  Window<SkinLayer> window_;
   int width_;
   int reach_y_;
   Rows along_z_;
@@ -305,7 +303,7 @@ Shell::Shell(const Grid& grid, const JobBox& box, double depth_mm,
   }
 }
 
-std::vector<std::byte> Shell::paint(int layer, std::span<const Shared<SkinLayer>> window) const {
+std::vector<std::byte> Shell::paint(int layer, const Window<SkinLayer>& window) const {
   std::vector<std::byte> bitmap(
       3 * static_cast<std::size_t>(box_.size_px[0]) * static_cast<std::size_t>(box_.size_px[1]),
       std::byte{255});

@@ -5,7 +5,6 @@
 
 #include <cstddef>
 #include <memory>
-#include <span>
 #include <vector>
 
 #include "slicer/color/skin.h"
@@ -22,12 +21,12 @@ class Shell {
   int reach() const { return reach_[2]; }
 
   // The bitmap of a layer: 24-bit rows, red first, row 0 is the smallest y. `window` is the skin of
-  // layer - reach() to layer + reach(), null beyond the job's ends. A pixel of the skin
-  // has its color whether or not the mask has it. A pixel of the mask takes the color of the
-  // nearest pixel of the skin if that is within the depth. A pixel on the mask's
-  // boundary always has a color: what enhancement made boundary takes that of its neighbours, and
-  // where there are none the surface's own. Pure; takes as much memory as the bitmap.
-  std::vector<std::byte> paint(int layer, std::span<const Shared<SkinLayer>> window) const;
+  // reach() layers on each side. A pixel of the skin has its color whether or not the mask has it.
+  // A pixel of the mask takes the color of the nearest pixel of the skin if that is within the
+  // depth. A pixel on the mask's boundary always has a color: what enhancement made boundary takes
+  // that of its neighbours, and where there are none the surface's own. Pure; takes as much memory
+  // as the bitmap.
+  std::vector<std::byte> paint(int layer, const Window<SkinLayer>& window) const;
 
  private:
   class Band;

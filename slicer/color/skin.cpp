@@ -59,17 +59,15 @@ const RunLayer* slice_of(const MaskLayer* masks, bool first) {
 
 }  // namespace
 
-std::unique_ptr<Stream<SkinLayer>> skin(std::unique_ptr<Stream<MaskLayer>> masks, const Grid& grid,
-                                        const JobBox& box, LayerRange layers,
-                                        std::shared_ptr<const ColorField> field) {
-  using Skin = Step<MaskLayer, SkinLayer>;
-  return std::make_unique<Skin>(
-      std::move(masks), layers, 1, box.size_px[2],
-      [grid, box, field = std::move(field)](int layer, Skin::Window window) {
+Pipeline<SkinLayer> skin(const Pipeline<MaskLayer>& masks, const Grid& grid, const JobBox& box,
+                         std::shared_ptr<const ColorField> field) {
+  return masks.then(
+      "skin", LayerReach::both_sides(1),
+      [grid, box, field = std::move(field)](int layer, const Window<MaskLayer>& window) {
         SkinLayer out;
-        out.masks = window[1];
+        out.masks = window.shared(0);
         out.pixels = RunLayer(box.size_px[0]);
-        const std::vector<RunLayer>& slices = window[1]->target->slices;
+        const std::vector<RunLayer>& slices = window.middle().target->slices;
         const auto [rx, ry, rz] = grid.detail_vx;
         const std::unique_ptr<ColorSlab> slab =
             field->slab(layer * grid.pitch_mm[2], (layer + 1) * grid.pitch_mm[2]);
@@ -78,9 +76,9 @@ std::unique_ptr<Stream<SkinLayer>> skin(std::unique_ptr<Stream<MaskLayer>> masks
         for (int j = 0; j < box.size_px[1]; ++j) {
           for (int s = 0; s < rz; ++s) {
             const RunLayer* under =
-                s > 0 ? &slices[static_cast<std::size_t>(s) - 1] : slice_of(window[0].get(), false);
+                s > 0 ? &slices[static_cast<std::size_t>(s) - 1] : slice_of(window.at(-1), false);
             const RunLayer* over = s + 1 < rz ? &slices[static_cast<std::size_t>(s) + 1]
-                                              : slice_of(window[2].get(), true);
+                                              : slice_of(window.at(1), true);
             const RunLayer& slice = slices[static_cast<std::size_t>(s)];
             for (int y = j * ry; y < (j + 1) * ry; ++y) {
               if (slice.row(y).empty()) continue;

@@ -9,7 +9,7 @@
 #include "slicer/color/field.h"
 #include "slicer/enhance/masks.h"
 #include "slicer/layers/grid.h"
-#include "slicer/layers/stream.h"
+#include "slicer/layers/pipeline.h"
 
 namespace binderjet {
 
@@ -20,9 +20,7 @@ struct SkinLayer {
   std::vector<Rgb> colors;        // of the pixels, row by row
 };
 
-// `masks` must begin one layer before `layers` and end one after, or at the job's ends.
-std::unique_ptr<Stream<SkinLayer>> skin(std::unique_ptr<Stream<MaskLayer>> masks, const Grid& grid,
-                                        const JobBox& box, LayerRange layers,
-                                        std::shared_ptr<const ColorField> field);
+Pipeline<SkinLayer> skin(const Pipeline<MaskLayer>& masks, const Grid& grid, const JobBox& box,
+                         std::shared_ptr<const ColorField> field);
 
 }  // namespace binderjet

@@ -20,7 +20,7 @@ struct BlockForm {
   int size = 1;
   int shift = 0;
 
-  // The blocks that hold these layers, and the layers of these blocks.
+  // The blocks that hold these layers, and the layers of these blocks, cut at the job's ends.
   LayerRange blocks_of(LayerRange layers) const {
     return {(layers.first + shift) / size, (layers.last + shift + size - 1) / size};
   }

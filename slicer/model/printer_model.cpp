@@ -38,12 +38,12 @@ void PrinterModel::choose_filter(const Grid& grid, const JobPlace& place) {
   }
 }
 
-RunLayer PrinterModel::bind(std::span<const RunLayer* const> window, int layer) const {
-  const AssembledModel::Received masks = form_.received(window, layer);
+RunLayer PrinterModel::bind(const RunWindow& window, int layer) const {
+  const AssembledModel::Received received = form_.received(window, layer);
   const auto* box = std::get_if<OneBox>(&filter_);
-  return box != nullptr ? box_threshold(*masks.masks[masks.masks.size() / 2], repeat_, box->x,
-                                        box->y, box->least)
-                        : std::get<DoseFilter>(filter_)(masks.masks, layer);
+  return box != nullptr
+             ? box_threshold(received.masks.middle(), repeat_, box->x, box->y, box->least)
+             : std::get<DoseFilter>(filter_)(received.masks, layer);
 }
 
 int PrinterModel::wear_reach() const {
@@ -52,53 +52,40 @@ int PrinterModel::wear_reach() const {
   return reach;
 }
 
-RunLayer PrinterModel::worn(std::span<const RunLayer* const> bound) const {
-  std::vector<const RunLayer*> layers(bound.begin(), bound.end());
+// Each step of wear leaves a window that is smaller by its reach.
+RunLayer PrinterModel::worn(const RunWindow& bound) const {
+  RunWindow layers = bound;
   std::vector<RunLayer> done;
   for (const Wear& step : form_.wear) {
-    const auto span = 2 * static_cast<std::size_t>(step.reach.layers_below) + 1;
-    const std::size_t count = layers.size() - span + 1;
-    std::vector<RunLayer> next(count);
-    std::vector<const RunLayer*> next_layers(count, nullptr);
-    for (std::size_t first = 0; first < count; ++first) {
-      if (layers[first + span / 2] == nullptr) continue;
-      next[first] = step.apply(std::span<const RunLayer* const>(layers).subspan(first, span));
-      next_layers[first] = &next[first];
-    }
+    const int reach = layers.reach() - step.reach.layers_below;
+    std::vector<RunLayer> next(2 * static_cast<std::size_t>(reach) + 1);
+    RunWindow next_layers = RunWindow::around(reach, [&](int offset) -> const RunLayer* {
+      if (layers.at(offset) == nullptr) return nullptr;
+      RunLayer& out = next[static_cast<std::size_t>(offset + reach)];
+      out = step.apply(layers.part(offset, step.reach.layers_below));
+      return &out;
+    });
     done = std::move(next);
     layers = std::move(next_layers);
   }
   return std::move(done.front());
 }
 
-RunLayer PrinterModel::print(std::span<const RunLayer* const> window, int layer) const {
+RunLayer PrinterModel::print(const RunWindow& window, int layer) const {
   if (form_.wear.empty()) return bind(window, layer);
   const int around = wear_reach();
-  const auto count = 2 * static_cast<std::size_t>(bind_reach()) + 1;
-  // The window may be larger than this model asks for.
-  window = window.subspan(window.size() / 2 - static_cast<std::size_t>(window_reach()),
-                          2 * static_cast<std::size_t>(window_reach()) + 1);
   std::vector<RunLayer> bound(2 * static_cast<std::size_t>(around) + 1);
-  std::vector<const RunLayer*> layers(bound.size(), nullptr);
-  for (std::size_t i = 0; i < bound.size(); ++i) {
-    const auto part = window.subspan(i, count);
-    if (part[count / 2] == nullptr) continue;
-    bound[i] = bind(part, layer + static_cast<int>(i) - around);
-    layers[i] = &bound[i];
-  }
-  return worn(layers);
-}
-
-RunLayer PrinterModel::print(std::span<const Shared<RunLayer>> window, int layer) const {
-  std::vector<const RunLayer*> masks;
-  for (const Shared<RunLayer>& mask : window) masks.push_back(mask.get());
-  return print(masks, layer);
+  return worn(RunWindow::around(around, [&](int offset) -> const RunLayer* {
+    if (window.at(offset) == nullptr) return nullptr;
+    RunLayer& out = bound[static_cast<std::size_t>(offset + around)];
+    out = bind(window.part(offset, bind_reach()), layer + offset);
+    return &out;
+  }));
 }
 
 RunLayer PrinterModel::print(const RunLayer& mask) const {
-  std::vector<const RunLayer*> window(2 * static_cast<std::size_t>(window_reach()) + 1, nullptr);
-  window[window.size() / 2] = &mask;
-  return print(window);
+  return print(
+      RunWindow::around(window_reach(), [&](int offset) { return offset == 0 ? &mask : nullptr; }));
 }
 
 }  // namespace binderjet

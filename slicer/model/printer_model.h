@@ -4,13 +4,12 @@
 
 #include <array>
 #include <cstdint>
-#include <span>
 #include <variant>
 #include <vector>
 
 #include "slicer/layers/grid.h"
 #include "slicer/layers/run_layer.h"
-#include "slicer/layers/stream.h"
+#include "slicer/layers/window.h"
 #include "slicer/model/effects/assembled_model.h"
 #include "slicer/model/effects/effect.h"
 
@@ -30,20 +29,19 @@ class PrinterModel {
   int window_reach() const { return std::max(reach_.layers_below, reach_.layers_above); }
 
   // The printed voxels of a layer, at the voxel grid in x and y; all its rz slices are equal.
-  // `window` holds the masks of window_reach() layers below it, its own, and as many above; null
-  // is powder. `layer` is the layer's number in its job, from 0 on the bed.
-  RunLayer print(std::span<const RunLayer* const> window, int layer = 0) const;
-  RunLayer print(std::span<const Shared<RunLayer>> window, int layer = 0) const;
+  // `window` holds its mask and those of window_reach() layers on each side; null is powder.
+  // `layer` is the layer's number in its job, from 0 on the bed.
+  RunLayer print(const RunWindow& window, int layer = 0) const;
   // The same for a layer between layers of powder.
   RunLayer print(const RunLayer& mask) const;
 
   // print() in two steps, so that who wants all layers need not bind each of them many times:
-  // what is bound, from the middle bind_reach() layers of such a window ...
+  // what is bound, from a window of bind_reach() layers on each side ...
   int bind_reach() const { return window_reach() - wear_reach(); }
-  RunLayer bind(std::span<const RunLayer* const> window, int layer) const;
-  // ... and what is left of that, from wear_reach() bound layers below, its own, and as many above.
+  RunLayer bind(const RunWindow& window, int layer) const;
+  // ... and what is left of that, from wear_reach() bound layers on each side.
   int wear_reach() const;
-  RunLayer worn(std::span<const RunLayer* const> bound) const;
+  RunLayer worn(const RunWindow& bound) const;
 
  private:
   // Most models are one box (the paper's is), which has a faster way.

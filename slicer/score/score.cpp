@@ -31,18 +31,22 @@ class ComparedStream : public Stream<ComparedLayer> {
 
 }  // namespace
 
+Pipeline<LayerScore> score_steps(const Pipeline<ComparedLayer>& compared, const Grid& grid) {
+  return compared.then(
+      "score", LayerReach::both_sides(1), [grid](int, const Window<ComparedLayer>& window) {
+        const ComparedLayer& layer = window.middle();
+        return LayerScore{layer, count_voxels(*layer.target, *layer.printed),
+                          edge_errors(*layer.target, *layer.printed, grid),
+                          find_lost_and_fused(window.at(-1), layer, window.at(1), grid)};
+      });
+}
+
 std::unique_ptr<Stream<LayerScore>> score_layers(std::unique_ptr<Stream<VoxelLayer>> target,
                                                  std::unique_ptr<Stream<RunLayer>> printed,
                                                  const Grid& grid, LayerRange layers) {
-  using Compare = Step<ComparedLayer, LayerScore>;
-  return std::make_unique<Compare>(
-      std::make_unique<ComparedStream>(std::move(target), std::move(printed)), layers, 1, layers,
-      [grid](int, Compare::Window window) {
-        const ComparedLayer& layer = *window[1];
-        return LayerScore{layer, count_voxels(*layer.target, *layer.printed),
-                          edge_errors(*layer.target, *layer.printed, grid),
-                          find_lost_and_fused(window[0].get(), layer, window[2].get(), grid)};
-      });
+  std::unique_ptr<Stream<ComparedLayer>> compared =
+      std::make_unique<ComparedStream>(std::move(target), std::move(printed));
+  return score_steps({"compare", layers, std::move(compared)}, grid).all_layers();
 }
 
 Scorer::Scorer(const Grid& grid, int first_layer)

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "slicer/layers/grid.h"
-#include "slicer/layers/stream.h"
+#include "slicer/layers/pipeline.h"
 #include "slicer/score/edge_error.h"
 #include "slicer/score/faults.h"
 #include "slicer/score/lost_and_fused.h"
@@ -23,6 +23,8 @@ struct LayerScore {
   LostAndFused missing;
 };
 
+// Each layer from its neighbors; beyond the ends of what is compared is powder.
+Pipeline<LayerScore> score_steps(const Pipeline<ComparedLayer>& compared, const Grid& grid);
 // Both streams begin with the first layer of `layers` and end with its last; beyond is powder.
 std::unique_ptr<Stream<LayerScore>> score_layers(std::unique_ptr<Stream<VoxelLayer>> target,
                                                  std::unique_ptr<Stream<RunLayer>> printed,

@@ -215,4 +215,11 @@ std::unique_ptr<Stream<VoxelLayer>> voxelize(std::shared_ptr<const Mesh> mesh, c
   return std::make_unique<Voxelizer>(std::move(mesh), grid, box, layers);
 }
 
+Pipeline<VoxelLayer> voxel_layers(std::shared_ptr<const Mesh> mesh, const Grid& grid,
+                                  const JobBox& box) {
+  return {"voxelize", {0, box.size_px[2]}, [mesh = std::move(mesh), grid, box](LayerRange layers) {
+            return voxelize(mesh, grid, box, layers);
+          }};
+}
+
 }  // namespace binderjet

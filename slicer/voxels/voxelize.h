@@ -18,8 +18,8 @@
 #include <vector>
 
 #include "slicer/layers/grid.h"
+#include "slicer/layers/pipeline.h"
 #include "slicer/layers/run_layer.h"
-#include "slicer/layers/stream.h"
 #include "slicer/mesh/mesh.h"
 
 namespace binderjet {
@@ -32,5 +32,8 @@ struct VoxelLayer {
 // The layers `layers` of a part whose lower corner is at (0, 0, 0), in the box `box`.
 std::unique_ptr<Stream<VoxelLayer>> voxelize(std::shared_ptr<const Mesh> mesh, const Grid& grid,
                                              const JobBox& box, LayerRange layers);
+// All layers of the box, as the beginning of a pipeline.
+Pipeline<VoxelLayer> voxel_layers(std::shared_ptr<const Mesh> mesh, const Grid& grid,
+                                  const JobBox& box);
 
 }  // namespace binderjet

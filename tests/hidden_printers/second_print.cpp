@@ -41,18 +41,17 @@ Scene scene_of(const Wanted& wanted) {
 std::vector<Shared<RunLayer>> masks_of(const Scene& scene, const std::string& enhance,
                                        const std::vector<EffectSpec>& effects,
                                        const MaskRules& rules) {
-  const auto stream = [&] {
-    if (enhance == "none") {
-      return plain_masks(scene.wanted.mesh, scene.grid, scene.box, scene.layers());
-    }
+  const Pipeline<VoxelLayer> target = voxel_layers(scene.wanted.mesh, scene.grid, scene.box);
+  const auto enhanced = [&]() -> Pipeline<MaskLayer> {
+    if (enhance == "none") return plain_masks(target, scene.grid);
     const std::vector<PrinterModel> window = process_window(effects, scene.grid, scene.place);
     if (enhance == "paper") {
-      return paper_masks(scene.wanted.mesh, scene.grid, scene.box, scene.layers(),
-                         std::make_shared<const PrinterModel>(window.front()), kPaperPasses);
+      return paper_masks(target, scene.grid, std::make_shared<const PrinterModel>(window.front()),
+                         kPaperPasses);
     }
-    return inverse_masks(scene.wanted.mesh, scene.grid, scene.box, scene.layers(),
-                         std::make_shared<const InverseSolver>(window, scene.grid, rules));
-  }();
+    return inverse_masks(target, std::make_shared<const InverseSolver>(window, scene.grid, rules));
+  };
+  const auto stream = enhanced().layers(scene.layers());
   std::vector<Shared<RunLayer>> out;
   while (stream->rest().size() > 0) {
     for (const Shared<MaskLayer>& layer : stream->next(kBlockLayers)) {

@@ -47,7 +47,8 @@ class PaperGargoyle : public testing::Test {
 
   Print printed(const PrinterModel& model, int passes, const JobBox& box) const {
     const auto shared = std::make_shared<const PrinterModel>(model);
-    const auto masks = paper_masks(mesh_, grid_, box, {0, box.size_px[2]}, shared, passes);
+    const auto masks =
+        paper_masks(voxel_layers(mesh_, grid_, box), grid_, shared, passes).all_layers();
     Print out;
     while (masks->rest().size() > 0) {
       for (const auto& layer : masks->next(kBlockLayers)) {

@@ -48,7 +48,7 @@ std::shared_ptr<const Mesh> slotted_block(int axis, double shift) {
 std::vector<RunLayer> printed_layers(const std::shared_ptr<const Mesh>& mesh, const Grid& grid,
                                      const PrinterModel& model, JobBox& box) {
   box = job_box(bounding_box(*mesh).max, grid, {0, 0}, model.reach().xy_vx);
-  const auto masks = plain_masks(mesh, grid, box, {0, box.size_px[2]});
+  const auto masks = plain_masks(voxel_layers(mesh, grid, box), grid).all_layers();
   std::vector<RunLayer> out;
   while (masks->rest().size() > 0) {
     for (const auto& layer : masks->next(kBlockLayers)) out.push_back(model.print(layer->mask));

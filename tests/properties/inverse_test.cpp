@@ -10,8 +10,8 @@
 #include "slicer/enhance/masks.h"
 #include "slicer/model/process_window.h"
 #include "slicer/score/voxel_counts.h"
-#include "tests/support/mask_regions.h"
 #include "tests/support/examples.h"
+#include "tests/support/mask_regions.h"
 #include "tests/support/random.h"
 #include "tests/support/score_volumes.h"
 
@@ -44,11 +44,9 @@ Case random_case(Random& random, bool with_rules) {
 }
 
 Volume streamed(const Case& c, LayerRange layers, int block) {
-  const auto target = [&](LayerRange range) {
-    return whole::voxel_stream(c.target, c.grid.detail_vx[2], range);
-  };
   const auto solver = std::make_shared<const InverseSolver>(c.window, c.grid, c.rules);
-  const auto stream = inverse_masks(target, layers, c.layers, solver);
+  const auto stream =
+      inverse_masks(whole::voxel_layers(c.target, c.grid.detail_vx[2]), solver).layers(layers);
   std::vector<Shared<RunLayer>> masks;
   while (stream->rest().size() > 0) {
     for (const Shared<MaskLayer>& layer : stream->next(block)) {
@@ -83,12 +81,9 @@ std::vector<std::int64_t> wrong_in_place(const Case& c, const Volume& masks) {
   }
   std::vector<std::int64_t> out;
   for (int k = 0; k < c.layers; ++k) {
-    std::vector<Shared<RunLayer>> window;
-    for (int n = k - model.window_reach(); n <= k + model.window_reach(); ++n) {
-      window.push_back(n < 0 || n >= c.layers ? nullptr : layers[static_cast<std::size_t>(n)]);
-    }
     const VoxelCounts counts =
-        count_voxels(*target[static_cast<std::size_t>(k)], model.print(window, k));
+        count_voxels(*target[static_cast<std::size_t>(k)],
+                     model.print(runs_around(layers, k, model.window_reach()), k));
     out.push_back(counts.missing + counts.extra);
   }
   return out;

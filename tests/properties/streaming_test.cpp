@@ -4,6 +4,7 @@
 #include <oneapi/tbb/global_control.h>
 
 #include "slicer/enhance/masks.h"
+#include "slicer/model/print_masks.h"
 #include "tests/support/random.h"
 
 namespace binderjet {
@@ -34,10 +35,9 @@ Case random_case(Random& random) {
 
 // The masks of `layers` pulled `block` at a time.
 Volume streamed(const Case& c, LayerRange layers, int block) {
-  const auto target = [&](LayerRange range) {
-    return whole::voxel_stream(c.target, c.grid.detail_vx[2], range);
-  };
-  const auto stream = paper_masks(target, c.grid, layers, c.layers, c.model, c.passes);
+  const auto stream =
+      paper_masks(whole::voxel_layers(c.target, c.grid.detail_vx[2]), c.grid, c.model, c.passes)
+          .layers(layers);
   std::vector<Shared<RunLayer>> masks;
   while (stream->rest().size() > 0) {
     for (const Shared<MaskLayer>& layer : stream->next(block)) {
@@ -48,11 +48,9 @@ Volume streamed(const Case& c, LayerRange layers, int block) {
 }
 
 Volume printed(const PrinterModel& model, const Volume& mask) {
-  using Print = Step<RunLayer, RunLayer>;
-  const LayerRange layers{0, mask.nz};
-  Print print(whole::layer_stream(mask), layers, model.window_reach(), layers,
-              [&](int, Print::Window window) { return model.print(window); });
-  return whole::stacked(print.next(mask.nz));
+  const Pipeline<RunLayer> masks("masks", {0, mask.nz}, whole::layer_stream(mask));
+  const auto print = print_masks(masks, std::make_shared<const PrinterModel>(model)).all_layers();
+  return whole::stacked(print->next(mask.nz));
 }
 
 TEST(Streaming, GivesTheMasksAndThePrintOfTheWholeVolume) {

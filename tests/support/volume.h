@@ -10,8 +10,8 @@
 #include <vector>
 
 #include "slicer/layers/grid.h"
+#include "slicer/layers/pipeline.h"
 #include "slicer/layers/run_layer.h"
-#include "slicer/layers/stream.h"
 #include "slicer/model/printer_model.h"
 #include "slicer/voxels/voxelize.h"
 
@@ -187,6 +187,10 @@ class VolumeStream : public Stream<T> {
 inline std::unique_ptr<Stream<VoxelLayer>> voxel_stream(const Volume& v, int rz,
                                                         LayerRange layers) {
   return std::make_unique<VolumeStream<VoxelLayer>>(v, rz, layers);
+}
+inline Pipeline<VoxelLayer> voxel_layers(const Volume& v, int rz) {
+  return {
+      "voxels", {0, v.nz / rz}, [v, rz](LayerRange layers) { return voxel_stream(v, rz, layers); }};
 }
 inline std::unique_ptr<Stream<RunLayer>> layer_stream(const Volume& v) {
   return std::make_unique<VolumeStream<RunLayer>>(v, 1, LayerRange{0, v.nz});

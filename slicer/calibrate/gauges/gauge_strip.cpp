@@ -58,9 +58,9 @@ std::vector<bool> print_line(const PrinterModel& model, const Grid& grid, int ax
     }
     mask.end_row();
   }
-  const std::vector<const RunLayer*> window(2 * static_cast<std::size_t>(model.window_reach()) + 1,
-                                            &mask);
-  const RunLayer printed = model.print(window);
+  // A gauge along x or y stands over many layers, so those around this one are like it.
+  const RunLayer printed =
+      model.print(RunWindow::around(model.window_reach(), [&](int) { return &mask; }));
   std::vector<bool> out;
   const int voxels = axis == 0 ? printed.width() : printed.height();
   for (int v = 0; v < voxels; ++v) {
@@ -87,9 +87,9 @@ std::vector<bool> print_column(const PrinterModel& model, const Grid& grid,
     }
     const auto [place, is_new] = seen.try_emplace(states, false);
     if (is_new) {
-      std::vector<const RunLayer*> window;
-      for (const bool state : states) window.push_back(state ? &solid : &powder);
-      const RunLayer printed = model.print(window);
+      const RunLayer printed = model.print(RunWindow::around(reach, [&](int offset) {
+        return states[static_cast<std::size_t>(reach + offset)] ? &solid : &powder;
+      }));
       place->second = printed.at(printed.width() / 2, printed.height() / 2);
     }
     out.push_back(place->second);

@@ -87,22 +87,14 @@ double DoseProbe::term_dose(const Term& term, const RunLayer& mask, int layer,
   return dose * term.gain;
 }
 
-void DoseProbe::margins(std::span<const RunLayer* const> window, int layer,
-                        std::span<const DosePlace> places, std::span<double> out) const {
+void DoseProbe::margins(const RunWindow& window, int layer, std::span<const DosePlace> places,
+                        std::span<double> out) const {
   const AssembledModel::Received received = form_.received(window, layer);
-  window = received.masks;
-  const int middle = static_cast<int>(window.size()) / 2;
-  std::optional<DensityField> density;
-  if (form_.placed.density_radius_mm) {
-    const int reach = form_.placed.density_layers(grid_);
-    density.emplace(window.subspan(static_cast<std::size_t>(middle - reach),
-                                   2 * static_cast<std::size_t>(reach) + 1),
-                    grid_, *form_.placed.density_radius_mm);
-  }
+  const std::optional<DensityField> density = density_of(received.masks, grid_, form_.placed);
   for (std::size_t i = 0; i < places.size(); ++i) {
     double dose = 0;
     for (const Term& term : terms_) {
-      const RunLayer* mask = window[static_cast<std::size_t>(middle + term.layer)];
+      const RunLayer* mask = received.masks.at(term.layer);
       if (mask != nullptr) dose += term_dose(term, *mask, layer + term.layer, places[i]);
     }
     if (!form_.placed.gains.empty()) {

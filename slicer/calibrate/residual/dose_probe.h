@@ -25,8 +25,8 @@ class DoseProbe {
   int window_reach() const { return window_reach_; }
 
   // Dose minus level at each place of a layer; `window` as for PrinterModel::print().
-  void margins(std::span<const RunLayer* const> window, int layer,
-               std::span<const DosePlace> places, std::span<double> out) const;
+  void margins(const RunWindow& window, int layer, std::span<const DosePlace> places,
+               std::span<double> out) const;
 
  private:
   // The running sum of a kernel: rise[i] is the share that lands at most at first + i.

@@ -94,24 +94,14 @@ LayerPoints pair_layer(const MeasuredJob& job, int index, const RunLayer& printe
   return out;
 }
 
-std::vector<const RunLayer*> window_of(const std::vector<Shared<RunLayer>>& layers, int index,
-                                       int reach) {
-  const int count = static_cast<int>(layers.size());
-  std::vector<const RunLayer*> window;
-  for (int k = index - reach; k <= index + reach; ++k) {
-    window.push_back(k < 0 || k >= count ? nullptr : layers[static_cast<std::size_t>(k)].get());
-  }
-  return window;
-}
-
 DoseProbe probe_of(const MeasuredJob& job, const std::vector<EffectSpec>& model) {
   return {PrinterModel(model, job.grid, job.place).form(), job.grid, job.place};
 }
 
 }  // namespace
 
-std::vector<const RunLayer*> mask_window(const MeasuredJob& job, int index, int reach) {
-  return window_of(job.masks, index, reach);
+RunWindow mask_window(const MeasuredJob& job, int index, int reach) {
+  return runs_around(job.masks, index, reach);
 }
 
 std::vector<Shared<RunLayer>> bound_layers(const MeasuredJob& job, const PrinterModel& printer,
@@ -123,7 +113,7 @@ std::vector<Shared<RunLayer>> bound_layers(const MeasuredJob& job, const Printer
     const auto last = layers.begin() + std::min(job.layers(), index + around + 1);
     if (std::find(first, last, true) == last) return;
     job.check();
-    const auto window = mask_window(job, index, printer.bind_reach());
+    const RunWindow window = mask_window(job, index, printer.bind_reach());
     bound[static_cast<std::size_t>(index)] =
         std::make_shared<const RunLayer>(printer.bind(window, job.first_layer + index));
   });
@@ -138,7 +128,7 @@ std::vector<Shared<RunLayer>> worn_layers(const MeasuredJob& job, const PrinterM
     if (!layers[static_cast<std::size_t>(index)]) return;
     job.check();
     out[static_cast<std::size_t>(index)] = std::make_shared<const RunLayer>(
-        printer.worn(window_of(bound, index, printer.wear_reach())));
+        printer.worn(runs_around(bound, index, printer.wear_reach())));
   });
   return out;
 }
@@ -187,7 +177,7 @@ std::vector<SurfacePoint> surface_points(const MeasuredJob& job,
       for (const SurfacePoint& point : mine.points) places.push_back(point.place());
     }
     std::vector<double> margins(places.size());
-    const auto window = mask_window(job, index, probe.window_reach());
+    const RunWindow window = mask_window(job, index, probe.window_reach());
     probe.margins(window, job.first_layer + index, places, margins);
     for (std::size_t i = 0; i < mine.offsets.size(); ++i) {
       SurfacePoint& point = mine.points[i / replicates];
@@ -224,7 +214,7 @@ std::vector<double> margins_at(const MeasuredJob& job, const std::vector<EffectS
       place.y_vx += offset_vx[1];
       places.push_back(place);
     }
-    const auto window = mask_window(job, index, probe.window_reach());
+    const RunWindow window = mask_window(job, index, probe.window_reach());
     probe.margins(window, job.first_layer + index, places,
                   std::span(out).subspan(first, last - first));
   });

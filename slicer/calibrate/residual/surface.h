@@ -42,7 +42,7 @@ constexpr double kPairReachMm = 0.45;
 using LayerChoice = std::vector<bool>;
 
 // The window of masks around layer `index`, `reach` on each side; null beyond the job.
-std::vector<const RunLayer*> mask_window(const MeasuredJob& job, int index, int reach);
+RunWindow mask_window(const MeasuredJob& job, int index, int reach);
 
 // What the model prints of the chosen layers; others stay empty.
 std::vector<Shared<RunLayer>> print_layers(const MeasuredJob& job,

@@ -47,17 +47,8 @@ InverseSolver::InverseSolver(std::vector<PrinterModel> window, const Grid& grid,
 
 InverseLayer InverseSolver::plain(int number, Shared<VoxelLayer> target) const {
   auto sliced = std::make_shared<const RunLayer>(slicing_operator(*target, search_.grid));
-  const int most = search_.rules.most();
-  if (most <= 1) return {std::move(target), sliced, sliced, {}, number};
-  const Rect box{0, 0, sliced->width(), sliced->height()};
-  Plane<std::uint8_t> mask(box.grown(most, most));
-  add_layer(*sliced, std::uint8_t{1}, mask);
-  obey(search_.rules, box, mask);
-  return {std::move(target),
-          sliced,
-          std::make_shared<const RunLayer>(to_layer(mask, sliced->width(), sliced->height())),
-          {},
-          number};
+  auto obeying = std::make_shared<const RunLayer>(obeying_mask(*sliced, search_.rules).mask);
+  return {std::move(target), std::move(sliced), std::move(obeying), {}, number};
 }
 
 InverseLayer InverseSolver::improve(LayerWindow layers, bool anew) const {

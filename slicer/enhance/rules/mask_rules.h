@@ -1,6 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // What a mask may look like: no island of binder and no hole in it with fewer pixels than the
-// profile's minimum. Pixels hang together by their sides; beyond the job's box all is powder.
+// printer's minimum, the profile's [mask]. Pixels hang together by their sides; beyond the job's
+// box all is powder.
+//
+//   . . . . . . . .    with a minimum of 4 pixels for both:
+//   . # # # # . # .    the hole of two is filled, then the island of three is erased;
+//   . # . . # . # #    holes come first, for what fills a hole belongs to the island around it
+//   . # # # # . . .
 #pragma once
 
 #include <array>
@@ -8,6 +14,7 @@
 #include <vector>
 
 #include "slicer/enhance/rules/rect_cells.h"
+#include "slicer/layers/run_layer.h"
 
 namespace binderjet {
 
@@ -17,6 +24,22 @@ struct MaskRules {
 
   int most() const { return std::max(min_island_px, min_hole_px); }
 };
+
+// How many islands and holes were too small.
+struct RuleChanges {
+  std::int64_t islands_erased = 0;
+  std::int64_t holes_filled = 0;
+
+  bool any() const { return islands_erased + holes_filled > 0; }
+  bool operator==(const RuleChanges&) const = default;
+};
+
+// A whole mask as the rules leave it. On runs: the cost is the boundary's.
+struct ObeyingMask {
+  RunLayer mask;
+  RuleChanges changes;
+};
+ObeyingMask obeying_mask(const RunLayer& mask, const MaskRules& rules);
 
 // Asks for the rules around single pixels. Pixels at the edge of the plane hang together with all
 // beyond it, so a plane needs most() pixels around what is asked for.
@@ -36,7 +59,7 @@ class RuleCheck {
   std::vector<std::array<int, 2>> found_;
 };
 
-// Makes the mask obey within `area`: holes that are too small are filled, then islands that are too
+// The same within an area of pixels: holes that are too small are filled, then islands that are too
 // small are erased, so that it obeys for good.
 void obey(const MaskRules& rules, const Rect& area, Plane<std::uint8_t>& mask);
 

@@ -26,9 +26,8 @@ void count(const RunLayer& mask, int cells_x, std::vector<std::int64_t>& solid) 
 
 }  // namespace
 
-DensityField::DensityField(std::span<const RunLayer* const> window, const Grid& grid,
-                           double radius_mm) {
-  const RunLayer& middle = *window[window.size() / 2];
+DensityField::DensityField(const RunWindow& window, const Grid& grid, double radius_mm) {
+  const RunLayer& middle = window.middle();
   cells_ = {(middle.width() + kCell - 1) / kCell, (middle.height() + kCell - 1) / kCell};
   const auto [nx, ny] = cells_;
   std::vector<std::int64_t> solid(static_cast<std::size_t>(nx) * static_cast<std::size_t>(ny), 0);
@@ -53,7 +52,7 @@ DensityField::DensityField(std::span<const RunLayer* const> window, const Grid& 
     cell_vx_[axis] = kCell * grid.detail_vx[static_cast<std::size_t>(a)];
   }
   const double volume = static_cast<double>(2 * half[0] + 1) * (2 * half[1] + 1) * kCell * kCell *
-                        static_cast<double>(window.size());
+                        (2 * window.reach() + 1);
   share_.resize(solid.size());
   for (int j = 0; j < ny; ++j) {
     for (int i = 0; i < nx; ++i) {

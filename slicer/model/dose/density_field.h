@@ -8,11 +8,10 @@
 #pragma once
 
 #include <cstdint>
-#include <span>
 #include <vector>
 
 #include "slicer/layers/grid.h"
-#include "slicer/layers/run_layer.h"
+#include "slicer/layers/window.h"
 
 namespace binderjet {
 
@@ -24,7 +23,7 @@ class DensityField {
 
   // `window` holds the masks of all layers that count, each the same; null is powder. `radius_mm`
   // is half the box's width in x and y.
-  DensityField(std::span<const RunLayer* const> window, const Grid& grid, double radius_mm);
+  DensityField(const RunWindow& window, const Grid& grid, double radius_mm);
 
   // At a place in voxels from the masks' lower corner; 0 to 1.
   double at(double x_vx, double y_vx) const;

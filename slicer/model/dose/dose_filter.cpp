@@ -247,9 +247,8 @@ DoseFilter::DoseFilter(std::span<const DoseTerm> terms, double level, const Grid
   least_ = std::max<std::int64_t>(1, std::llround(std::ceil(level * unit * (1 - kRounding))));
 }
 
-RunLayer DoseFilter::operator()(std::span<const RunLayer* const> window, int layer) const {
-  const int middle = static_cast<int>(window.size()) / 2;
-  const RunLayer& mask = *window[static_cast<std::size_t>(middle)];
+RunLayer DoseFilter::operator()(const RunWindow& window, int layer) const {
+  const RunLayer& mask = window.middle();
   const int height = mask.height() * repeat_[1];
   RunLayer out(mask.width() * repeat_[0]);
   out.reserve(height, mask.flip_count() * static_cast<std::size_t>(repeat_[1]));
@@ -261,8 +260,7 @@ RunLayer DoseFilter::operator()(std::span<const RunLayer* const> window, int lay
   for (int y = 0; y < height; ++y) {
     ramps.clear();
     for (const Term& term : terms_) {
-      assert(std::abs(term.layer) <= middle);
-      const RunLayer* from = window[static_cast<std::size_t>(middle + term.layer)];
+      const RunLayer* from = window.at(term.layer);
       if (from == nullptr) continue;
       if (placed_.shifts.empty()) {
         add_ramps(*from, y, repeat_, placed_, term.y, term.scale, term.kernel, ramps);

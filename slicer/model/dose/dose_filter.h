@@ -18,6 +18,7 @@
 #include <vector>
 
 #include "slicer/layers/run_layer.h"
+#include "slicer/layers/window.h"
 #include "slicer/model/dose/kernel.h"
 #include "slicer/model/dose/placed_dose.h"
 
@@ -40,9 +41,9 @@ class DoseFilter {
   DoseFilter(std::span<const DoseTerm> terms, double level, const Grid& grid,
              const PlacedDose& placed = {}, const JobPlace& place = {});
 
-  // window[i] is the mask of layer k - (window.size() - 1) / 2 + i, at least as far as the terms
-  // reach; null is powder. The middle one must be there. Shifted flips are placed to 1/16 voxel.
-  RunLayer operator()(std::span<const RunLayer* const> window, int layer = 0) const;
+  // `window` is the masks around the layer, at least as far as the terms reach; the middle one must
+  // be there. Shifted flips are placed to 1/16 voxel.
+  RunLayer operator()(const RunWindow& window, int layer = 0) const;
 
  private:
   // A term as integers; `kernel` is its place in x_.

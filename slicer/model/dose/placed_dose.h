@@ -104,13 +104,10 @@ inline Spot spot_at(const Grid& grid, const JobPlace& place, double x_vx, double
 
 // Of the middle layer of a window of masks (null is powder) that reaches at least
 // placed.density_layers(); none if no effect asks for it.
-inline std::optional<DensityField> density_of(std::span<const RunLayer* const> window,
-                                              const Grid& grid, const PlacedDose& placed) {
+inline std::optional<DensityField> density_of(const RunWindow& window, const Grid& grid,
+                                              const PlacedDose& placed) {
   if (!placed.density_radius_mm) return std::nullopt;
-  const auto middle = window.size() / 2;
-  const auto reach = static_cast<std::size_t>(placed.density_layers(grid));
-  return DensityField(window.subspan(middle - reach, 2 * reach + 1), grid,
-                      *placed.density_radius_mm);
+  return DensityField(window.part(0, placed.density_layers(grid)), grid, *placed.density_radius_mm);
 }
 
 // By what the dose of voxel (x, y) of a layer is multiplied; `density` may be null if no effect

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdlib>
 #include <utility>
 
 #include "slicer/base/error.h"
@@ -62,24 +63,19 @@ Reach AssembledModel::reach(const Grid& grid) const {
   return reach;
 }
 
-AssembledModel::Received AssembledModel::received(std::span<const RunLayer* const> window,
-                                                  int layer) const {
-  Received out{{window.begin(), window.end()}, nullptr};
-  if (moves.empty()) return out;
-  const int count = static_cast<int>(window.size());
-  for (int i = 0; i < count; ++i) {
-    int from = i;
-    for (const LayerMove& move : moves) from += move.by(layer + i - count / 2);
-    out.masks[static_cast<std::size_t>(i)] =
-        from < 0 || from >= count ? nullptr : window[static_cast<std::size_t>(from)];
-  }
-  const std::size_t middle = window.size() / 2;
-  if (out.masks[middle] == nullptr && window[middle] != nullptr) {
-    out.powder = std::make_shared<const RunLayer>(
-        RunLayer::powder(window[middle]->width(), window[middle]->height()));
-    out.masks[middle] = out.powder.get();
-  }
-  return out;
+AssembledModel::Received AssembledModel::received(const RunWindow& window, int layer) const {
+  if (moves.empty()) return {window, nullptr};
+  std::shared_ptr<const RunLayer> powder;
+  RunWindow masks = RunWindow::around(window.reach(), [&](int offset) -> const RunLayer* {
+    int from = offset;
+    for (const LayerMove& move : moves) from += move.by(layer + offset);
+    const RunLayer* mask = std::abs(from) <= window.reach() ? window.at(from) : nullptr;
+    if (offset != 0 || mask != nullptr || window.at(0) == nullptr) return mask;
+    powder = std::make_shared<const RunLayer>(
+        RunLayer::powder(window.middle().width(), window.middle().height()));
+    return powder.get();
+  });
+  return {std::move(masks), std::move(powder)};
 }
 
 AssembledModel assemble(const EffectList& effects, const Grid& grid, const JobPlace& place) {

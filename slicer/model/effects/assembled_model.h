@@ -5,11 +5,11 @@
 #include <array>
 #include <functional>
 #include <memory>
-#include <span>
 #include <vector>
 
 #include "slicer/layers/grid.h"
 #include "slicer/layers/run_layer.h"
+#include "slicer/layers/window.h"
 #include "slicer/model/dose/dose_filter.h"
 #include "slicer/model/dose/placed_dose.h"
 #include "slicer/model/effects/effect.h"
@@ -26,7 +26,7 @@ struct LayerMove {
 // as many below as above; null is beyond the job.
 struct Wear {
   Reach reach;
-  std::function<RunLayer(std::span<const RunLayer* const>)> apply;
+  std::function<RunLayer(const RunWindow&)> apply;
   // What this wear leaves ends where it ended before, so that a surface still tells the dose there.
   bool keeps_edges = false;
 };
@@ -57,10 +57,10 @@ struct AssembledModel {
   // The masks that layers around layer `layer` really get. Those whose mask is beyond the window
   // get null; if the middle one is, it gets `powder`.
   struct Received {
-    std::vector<const RunLayer*> masks;
+    RunWindow masks;
     std::shared_ptr<const RunLayer> powder;
   };
-  Received received(std::span<const RunLayer* const> window, int layer) const;
+  Received received(const RunWindow& window, int layer) const;
 };
 
 // What these effects add up to for a job that stands at `place`. Error{kBadInput} from the effects.

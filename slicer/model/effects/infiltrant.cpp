@@ -23,10 +23,9 @@ void write_into(const EffectSpec& spec, const Grid& grid, AssembledModel& form) 
     const auto [x, y, z] = by.reach();
     return Reach{{x, y}, z, z};
   };
-  form.wear.push_back({reach(out), [out](std::span<const RunLayer* const> window) {
-                         return dilated(window, out);
-                       }});
-  form.wear.push_back({reach(back), [back](std::span<const RunLayer* const> window) {
+  form.wear.push_back(
+      {reach(out), [out](const RunWindow& window) { return dilated(window, out); }});
+  form.wear.push_back({reach(back), [back](const RunWindow& window) {
                          return eroded(window, back, Beyond::kSame);
                        }});
 }

@@ -17,11 +17,9 @@ namespace {
 void add_opening(const Ellipsoid& ball, AssembledModel& form) {
   const auto [x, y, z] = ball.reach();
   const Reach reach{{x, y}, z, z};
-  form.wear.push_back({reach, [ball](std::span<const RunLayer* const> window) {
-                         return eroded(window, ball, Beyond::kPowder);
-                       }});
   form.wear.push_back(
-      {reach, [ball](std::span<const RunLayer* const> window) { return dilated(window, ball); }});
+      {reach, [ball](const RunWindow& window) { return eroded(window, ball, Beyond::kPowder); }});
+  form.wear.push_back({reach, [ball](const RunWindow& window) { return dilated(window, ball); }});
 }
 
 void add_gaussian(double radius_mm, const Grid& grid, AssembledModel& form) {

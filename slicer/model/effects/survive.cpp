@@ -18,9 +18,8 @@ constexpr double kMostMm = 10;
 void write_into(const EffectSpec& spec, const Grid& grid, AssembledModel& form) {
   const std::array<int, 2> box{pixels_for(spec.number("width_mm", 0), grid.voxel_mm(0)),
                                pixels_for(spec.number("width_mm", 1), grid.voxel_mm(1))};
-  form.wear_first({{{box[0] - 1, box[1] - 1}}, [box](std::span<const RunLayer* const> window) {
-                     return opening(*window[window.size() / 2], box);
-                   }});
+  form.wear_first({{{box[0] - 1, box[1] - 1}},
+                   [box](const RunWindow& window) { return opening(window.middle(), box); }});
 }
 
 void add_trials(TrialList& list) {

@@ -49,17 +49,14 @@ std::vector<Neighbour> neighbours(const Ellipsoid& by) {
 // The middle layer, each of whose rows takes in every row that the ellipsoid reaches from it:
 // `take`(row so far, layer or null where there is none, y, half width of the ellipsoid there).
 template <class Take>
-RunLayer over_neighbours(std::span<const RunLayer* const> window, const Ellipsoid& by,
-                         const Take& take) {
+RunLayer over_neighbours(const RunWindow& window, const Ellipsoid& by, const Take& take) {
   const std::vector<Neighbour> reached = neighbours(by);
-  const int middle_z = static_cast<int>(window.size() / 2);
-  const RunLayer& middle = *window[window.size() / 2];
+  const RunLayer& middle = window.middle();
   RunLayer out(middle.width());
   std::vector<int> runs;
   for (int y = 0; y < middle.height(); ++y) {
     runs.assign(middle.row(y).begin(), middle.row(y).end());
-    for (const auto& [dy, dz, half] : reached)
-      take(runs, window[static_cast<std::size_t>(middle_z + dz)], y + dy, half);
+    for (const auto& [dy, dz, half] : reached) take(runs, window.at(dz), y + dy, half);
     out.append_row(runs);
   }
   return out;
@@ -93,7 +90,7 @@ int Ellipsoid::half_width(int dy, int dz) const {
                                  radius_[0] * std::sqrt(std::max(0.0, left)) + kRounding));
 }
 
-RunLayer dilated(std::span<const RunLayer* const> window, const Ellipsoid& by) {
+RunLayer dilated(const RunWindow& window, const Ellipsoid& by) {
   std::vector<int> row;
   std::vector<int> next;
   return over_neighbours(window, by,
@@ -105,8 +102,8 @@ RunLayer dilated(std::span<const RunLayer* const> window, const Ellipsoid& by) {
                          });
 }
 
-RunLayer eroded(std::span<const RunLayer* const> window, const Ellipsoid& by, Beyond beyond) {
-  const int width = window[window.size() / 2]->width();
+RunLayer eroded(const RunWindow& window, const Ellipsoid& by, Beyond beyond) {
+  const int width = window.middle().width();
   std::vector<int> row;
   std::vector<int> next;
   return over_neighbours(window, by,

@@ -13,10 +13,10 @@
 #pragma once
 
 #include <array>
-#include <span>
 
 #include "slicer/layers/grid.h"
 #include "slicer/layers/run_layer.h"
+#include "slicer/layers/window.h"
 
 namespace binderjet {
 
@@ -39,10 +39,10 @@ class Ellipsoid {
 
 // `window` holds reach()[2] layers on each side of the middle one; null is beyond the stack. Within
 // a layer all outside is powder.
-RunLayer dilated(std::span<const RunLayer* const> window, const Ellipsoid& by);
+RunLayer dilated(const RunWindow& window, const Ellipsoid& by);
 
 // What lies beyond the stack in z: powder, or more of the same.
 enum class Beyond { kPowder, kSame };
-RunLayer eroded(std::span<const RunLayer* const> window, const Ellipsoid& by, Beyond beyond);
+RunLayer eroded(const RunWindow& window, const Ellipsoid& by, Beyond beyond);
 
 }  // namespace binderjet

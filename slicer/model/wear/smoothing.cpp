@@ -49,8 +49,8 @@ std::array<int, 3> Smoothing::reach() const {
   return out;
 }
 
-RunLayer Smoothing::operator()(std::span<const RunLayer* const> window) const {
-  const RunLayer& middle = *window[window.size() / 2];
+RunLayer Smoothing::operator()(const RunWindow& window) const {
+  const RunLayer& middle = window.middle();
   const auto [rx, ry, rz] = reach();
   const int width = middle.width();
   const int height = middle.height();
@@ -58,14 +58,16 @@ RunLayer Smoothing::operator()(std::span<const RunLayer* const> window) const {
   // Along z first, while voxels are runs; `columns` is padded in x.
   std::vector<int> columns(static_cast<std::size_t>(padded) * static_cast<std::size_t>(height), 0);
   std::vector<char> has(static_cast<std::size_t>(height), 0);
-  for (std::size_t k = 0; k < window.size(); ++k) {
-    if (window[k] == nullptr) continue;
+  for (int dz = -rz; dz <= rz; ++dz) {
+    const RunLayer* layer = window.at(dz);
+    if (layer == nullptr) continue;
+    const int weight = weights_[2][static_cast<std::size_t>(dz + rz)];
     for (int y = 0; y < height; ++y) {
-      const std::span<const int> row = window[k]->row(y);
+      const std::span<const int> row = layer->row(y);
       int* to = columns.data() + static_cast<std::ptrdiff_t>(y) * padded + rx;
       for (std::size_t i = 0; i < row.size(); i += 2) {
         has[static_cast<std::size_t>(y)] = 1;
-        for (int x = row[i]; x < row[i + 1]; ++x) to[x] += weights_[2][k];
+        for (int x = row[i]; x < row[i + 1]; ++x) to[x] += weight;
       }
     }
   }

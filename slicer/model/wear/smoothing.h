@@ -9,11 +9,11 @@
 #pragma once
 
 #include <array>
-#include <span>
 #include <vector>
 
 #include "slicer/layers/grid.h"
 #include "slicer/layers/run_layer.h"
+#include "slicer/layers/window.h"
 
 namespace binderjet {
 
@@ -25,7 +25,7 @@ class Smoothing {
 
   std::array<int, 3> reach() const;  // voxels in x and y, layers in z
   // `window` holds reach()[2] layers on each side of the middle one; null is powder.
-  RunLayer operator()(std::span<const RunLayer* const> window) const;
+  RunLayer operator()(const RunWindow& window) const;
 
  private:
   std::array<std::vector<int>, 3> weights_;  // of offsets -reach ... reach; they sum to 1024

@@ -67,22 +67,20 @@ inline Layers paint(const Mesh& mesh, const std::shared_ptr<const ColorField>& f
   const int count = out.box.size_px[2];
   if (range.size() == 0) range = {0, count};
   const Shell shell(out.grid, out.box, depth_mm, field);
-  const LayerRange skins = grown(range, shell.reach(), count);
-  const LayerRange all = grown(skins, 1, count);
-  auto masks = passes > 0 ? paper_masks(shared, out.grid, out.box, all, model, passes)
-                          : plain_masks(shared, out.grid, out.box, all);
+  const Pipeline<MaskLayer> masks =
+      paper_masks(voxel_layers(shared, out.grid, out.box), out.grid, model, passes);
   struct Painted {
     std::vector<std::byte> bitmap;
     Shared<MaskLayer> masks;
   };
-  using Paint = Step<SkinLayer, Painted>;
-  Paint stream(skin(std::move(masks), out.grid, out.box, skins, field), range, shell.reach(), count,
-               [&](int layer, Paint::Window window) {
-                 return Painted{shell.paint(layer, window),
-                                window[static_cast<std::size_t>(shell.reach())]->masks};
-               });
-  while (stream.rest().size() > 0) {
-    for (const auto& layer : stream.next(kBlockLayers)) {
+  const auto stream = skin(masks, out.grid, out.box, field)
+                          .then("paint", LayerReach::both_sides(shell.reach()),
+                                [&](int layer, const Window<SkinLayer>& window) {
+                                  return Painted{shell.paint(layer, window), window.middle().masks};
+                                })
+                          .layers(range);
+  while (stream->rest().size() > 0) {
+    for (const auto& layer : stream->next(kBlockLayers)) {
       out.bitmaps.push_back(layer->bitmap);
       out.masks.push_back(layer->masks->mask);
       out.targets.push_back(layer->masks->target);

@@ -82,7 +82,7 @@ TEST(PrinterModelForm, BindsTheLayerBelowThroughATermThatReachesThere) {
   EXPECT_EQ(model.window_reach(), 1);
   const RunLayer low = bars({10, 20});
   const RunLayer high = bars({15, 25});
-  const std::vector<const RunLayer*> window{nullptr, &low, &high};
+  const RunWindow window{nullptr, &low, &high};
   EXPECT_EQ(middle_row(model.print(window)), (std::vector<int>{10, 25}));
   EXPECT_EQ(model.print(low), low);
 }
@@ -103,7 +103,7 @@ TEST(DoseFilter, AgreesWithTheBoxFilterOnABox) {
   const DoseTerm term{0, box_kernel(x), box_kernel(y), 1};
   RunLayer mask(30);
   for (int row = 0; row < 12; ++row) mask.append_row(std::vector<int>{row, 2 * row + 3});
-  const RunLayer* const window[] = {&mask};
+  const RunWindow window{&mask};
   for (const double at : {0.1, 0.25, 0.5, 0.9, 1.0}) {
     EXPECT_EQ(DoseFilter({&term, 1}, at, {{0.2, 0.3, 0.1}, {2, 3, 1}})(window),
               box_threshold(mask, {2, 3}, x, y, least_sum(x, y, at)));

@@ -77,8 +77,9 @@ void Mending::mend(const Region& fault) {
   const auto [reach_x, reach_y] = by_.printer.reach().xy_vx;
   const int around_px = kAroundPx.back() + kBeside;
   const Rect near = pixels.grown(around_px + 2 * reach_x / rx, around_px + 2 * reach_y / ry);
-  const LayerRange near_layers =
-      grown(layers, kAroundLayers + 2 * by_.printer.window_reach() + kBeside, all_.count());
+  const LayerRange near_layers = grown(
+      layers, LayerReach::both_sides(kAroundLayers + 2 * by_.printer.window_reach() + kBeside),
+      {0, all_.count()});
   std::optional<Stretch> part;
   for (Patch patch : patches(layers, pixels, own_, near_layers)) {
     if (!part.has_value()) part = all_.cut(near, near_layers);

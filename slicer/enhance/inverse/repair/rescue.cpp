@@ -114,14 +114,17 @@ bool Rescue::take(RunLayer mask) {
 }
 
 void Rescue::search(const FaultsByOffset& before) {
-  std::vector<Shared<InverseLayer>> with_stress(layers_.begin(), layers_.end());
+  const int reach = layers_.reach().below;
+  std::vector<Shared<InverseLayer>> with_stress;
+  for (int offset = -reach; offset <= reach; ++offset) {
+    with_stress.push_back(layers_.shared(offset));
+  }
   std::vector<const RunLayer*> places;
   for (const auto& [offset, faults] : before) {
     InverseLayer layer = *layer_at(layers_, offset);
     layer.stressed.push_back(faults);
     if (offset == 0) out_.stressed.push_back(faults);
-    const auto middle = static_cast<std::ptrdiff_t>(layers_.size() / 2);
-    with_stress[static_cast<std::size_t>(middle + offset)] =
+    with_stress[static_cast<std::size_t>(reach + offset)] =
         std::make_shared<const InverseLayer>(std::move(layer));
     for (const RunLayer& slice : faults->missing.lost) places.push_back(&slice);
     for (const RunLayer& slice : faults->missing.fused) places.push_back(&slice);

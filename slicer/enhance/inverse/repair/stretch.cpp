@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <array>
 #include <memory>
+#include <optional>
 #include <utility>
 
 #include "slicer/enhance/inverse/repair/mask_patch.h"
@@ -21,22 +22,23 @@ std::size_t at(int layer) { return static_cast<std::size_t>(layer); }
 }  // namespace
 
 PrintedLayer with_print(const SearchModel& by, LayerWindow layers) {
-  const Shared<InverseLayer>& layer = layers[layers.size() / 2];
+  const Shared<InverseLayer>& layer = layers.shared(0);
   return {layer, std::make_shared<const RunLayer>(print_with(layers, 0, by.printer, *layer->mask)),
           nullptr};
 }
 
-PrintedLayer with_missing(const SearchModel& by, std::span<const Shared<PrintedLayer>> three) {
-  std::array<ComparedLayer, 3> compared;
-  std::array<const ComparedLayer*, 3> seen{};
-  for (std::size_t i = 0; i < 3; ++i) {
-    if (three[i] == nullptr) continue;
-    compared[i] = {three[i]->layer->target, three[i]->printed};
-    seen[i] = &compared[i];
-  }
-  PrintedLayer out = *three[1];
+PrintedLayer with_missing(const SearchModel& by, const Window<PrintedLayer>& three) {
+  const auto compared = [&](int offset) -> std::optional<ComparedLayer> {
+    const PrintedLayer* layer = three.at(offset);
+    if (layer == nullptr) return std::nullopt;
+    return ComparedLayer{layer->layer->target, layer->printed};
+  };
+  const auto below = compared(-1);
+  const auto above = compared(1);
+  PrintedLayer out = three.middle();
   out.missing = std::make_shared<const LostAndFused>(
-      find_lost_and_fused(seen[0], compared[1], seen[2], by.grid));
+      find_lost_and_fused(below ? &*below : nullptr, {out.layer->target, out.printed},
+                          above ? &*above : nullptr, by.grid));
   return out;
 }
 
@@ -81,20 +83,16 @@ Stretch::Faults Stretch::faults_of(const Layers& layers) const {
 }
 
 RunLayer Stretch::print(const Layers& layers, int k, Shared<RunLayer> InverseLayer::*mask) const {
-  const int reach = by_->printer.window_reach();
-  std::vector<const RunLayer*> masks;
-  for (int near = k - reach; near <= k + reach; ++near) {
-    const bool inside = near >= 0 && near < static_cast<int>(layers.size());
-    masks.push_back(inside ? ((*layers[at(near)]->layer).*mask).get() : nullptr);
-  }
-  return by_->printer.print(masks, layers[at(k)]->layer->number);
+  const auto mask_of = [&](const Shared<PrintedLayer>& one) { return ((*one->layer).*mask).get(); };
+  return by_->printer.print(runs_around(layers, k, by_->printer.window_reach(), mask_of),
+                            layers[at(k)]->layer->number);
 }
 
 void Stretch::look_at(Layers& layers, int k) const {
   const auto beside = [&](int near) {
     return near < 0 || near >= static_cast<int>(layers.size()) ? nullptr : layers[at(near)];
   };
-  const std::array three{beside(k - 1), layers[at(k)], beside(k + 1)};
+  const std::vector<Shared<PrintedLayer>> three{beside(k - 1), layers[at(k)], beside(k + 1)};
   layers[at(k)] = std::make_shared<const PrintedLayer>(with_missing(*by_, three));
 }
 
@@ -169,14 +167,15 @@ bool Stretch::take(const Patch& patch) {
     next[at(k)] = std::make_shared<const PrintedLayer>(
         std::make_shared<const InverseLayer>(std::move(changed)), nullptr, nullptr);
   }
-  const LayerRange prints = grown(patch.layers, by_->printer.window_reach(), count());
+  const LayerRange prints =
+      grown(patch.layers, LayerReach::both_sides(by_->printer.window_reach()), {0, count()});
   for (int k = prints.first; k < prints.last; ++k) {
     auto print_of = std::make_shared<const RunLayer>(print(next, k, &InverseLayer::mask));
     if (wrong_voxels(layer(k), *print_of) > most_wrong(k)) return false;
     next[at(k)] = std::make_shared<const PrintedLayer>(next[at(k)]->layer, std::move(print_of),
                                                        layers_[at(k)]->missing);
   }
-  const LayerRange seen = grown(prints, 1, count());
+  const LayerRange seen = grown(prints, LayerReach::both_sides(1), {0, count()});
   for (int k = seen.first; k < seen.last; ++k) {
     // The ends lack a neighbour, but keep what was seen with it.
     const bool at_end = (k == 0 && open_below_) || (k == count() - 1 && open_above_);

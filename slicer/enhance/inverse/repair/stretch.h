@@ -5,7 +5,6 @@
 
 #include <cstdint>
 #include <map>
-#include <span>
 #include <vector>
 
 #include "slicer/enhance/inverse/search/inverse_layer.h"
@@ -27,9 +26,8 @@ struct PrintedLayer {
 
 // The middle layer of a window of window_reach() on each side with its print ...
 PrintedLayer with_print(const SearchModel& by, LayerWindow layers);
-// ... and of three such layers, null beyond the job's ends, the middle one with what of it is lost
-// and fused.
-PrintedLayer with_missing(const SearchModel& by, std::span<const Shared<PrintedLayer>> three);
+// ... and of three such layers the middle one with what of it is lost and fused.
+PrintedLayer with_missing(const SearchModel& by, const Window<PrintedLayer>& three);
 
 // Pixels of some layers that get others, counted from the stretch's first layer.
 struct Patch {

@@ -2,22 +2,19 @@
 #include "slicer/enhance/inverse/search/inverse_layer.h"
 
 #include <algorithm>
-#include <vector>
 
 #include "slicer/score/voxel_counts.h"
 
 namespace binderjet {
 namespace {
 
+// The masks around the layer at `offset`, which need not be the middle one.
 template <class MaskOf>
-std::vector<const RunLayer*> gather(LayerWindow layers, int offset, const PrinterModel& model,
-                                    MaskOf mask_of) {
-  std::vector<const RunLayer*> masks;
-  for (int near = offset - model.window_reach(); near <= offset + model.window_reach(); ++near) {
-    const InverseLayer* layer = layer_at(layers, near);
-    masks.push_back(layer == nullptr ? nullptr : mask_of(*layer, near));
-  }
-  return masks;
+RunWindow gather(LayerWindow layers, int offset, const PrinterModel& model, MaskOf mask_of) {
+  return RunWindow::around(model.window_reach(), [&](int from_there) -> const RunLayer* {
+    const InverseLayer* layer = layer_at(layers, offset + from_there);
+    return layer == nullptr ? nullptr : mask_of(*layer, offset + from_there);
+  });
 }
 
 template <class MaskOf>
@@ -26,13 +23,6 @@ RunLayer print(LayerWindow layers, int offset, const PrinterModel& model, MaskOf
 }
 
 }  // namespace
-
-const InverseLayer* layer_at(LayerWindow layers, int offset) {
-  const int at = static_cast<int>(layers.size()) / 2 + offset;
-  return at < 0 || at >= static_cast<int>(layers.size())
-             ? nullptr
-             : layers[static_cast<std::size_t>(at)].get();
-}
 
 ModelOffsets offsets_of(const AssembledModel& form) {
   ModelOffsets offsets;
@@ -43,8 +33,7 @@ ModelOffsets offsets_of(const AssembledModel& form) {
   return offsets;
 }
 
-std::vector<const RunLayer*> masks_around(LayerWindow layers, int offset,
-                                          const PrinterModel& model) {
+RunWindow masks_around(LayerWindow layers, int offset, const PrinterModel& model) {
   return gather(layers, offset, model,
                 [](const InverseLayer& layer, int) { return layer.mask.get(); });
 }

@@ -4,12 +4,11 @@
 
 #include <cstdint>
 #include <set>
-#include <span>
 #include <vector>
 
 #include "slicer/enhance/inverse/search/loose_in_window.h"
 #include "slicer/layers/run_layer.h"
-#include "slicer/layers/stream.h"
+#include "slicer/layers/window.h"
 #include "slicer/model/printer_model.h"
 #include "slicer/score/faults.h"
 #include "slicer/score/lost_and_fused.h"
@@ -35,11 +34,12 @@ struct InverseLayer {
   int number = 0;  // in the job, from 0 on the bed
 };
 
-// An odd number of layers, null beyond the job's ends; offsets are from the middle one.
-using LayerWindow = std::span<const Shared<InverseLayer>>;
+// As many layers on each side of the one that is worked on.
+using LayerWindow = Window<InverseLayer>;
 
-// Null also beyond the window's ends.
-const InverseLayer* layer_at(LayerWindow layers, int offset);
+inline const InverseLayer* layer_at(const LayerWindow& layers, int offset) {
+  return layers.at(offset);
+}
 
 // The layers that the middle layer's mask has to do with, as offsets from the middle layer. Where
 // binder sinks one layer the print of k takes the masks of k and k + 1, so printed = {-1, 0} and
@@ -51,8 +51,7 @@ struct ModelOffsets {
 ModelOffsets offsets_of(const AssembledModel& form);
 
 // The masks so far that the model wants to see for the layer at `offset`.
-std::vector<const RunLayer*> masks_around(LayerWindow layers, int offset,
-                                          const PrinterModel& model);
+RunWindow masks_around(LayerWindow layers, int offset, const PrinterModel& model);
 
 // The print of the layer at `offset`, which must be there, from plain masks.
 RunLayer print_plain(LayerWindow layers, int offset, const PrinterModel& model);

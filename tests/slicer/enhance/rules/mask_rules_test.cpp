@@ -55,6 +55,38 @@ TEST(MaskRules, LeaveNothingThatIsTooSmall) {
   }
 }
 
+TEST(MaskRules, LeaveAWholeMaskAsTheyLeaveItsPixels) {
+  Random random;
+  RuleChanges sum;
+  for (int round = 0; round < 400; ++round) {
+    SCOPED_TRACE(round);
+    // Also masks of a few pixels with a minimum that is larger than all of them.
+    const MaskRules rules{random.number(1, 40), random.number(1, 40)};
+    const whole::Volume noise = random.volume(random.number(1, 30), random.number(1, 30), 1);
+    const RunLayer mask = whole::slice(noise, 0);
+    Plane<std::uint8_t> pixels = plane_of(mask, rules.most());
+    obey(rules, {0, 0, noise.nx, noise.ny}, pixels);
+    const ObeyingMask obeying = obeying_mask(mask, rules);
+    ASSERT_EQ(obeying.mask, to_layer(pixels, noise.nx, noise.ny));
+    ASSERT_EQ(obeying.changes.any(), obeying.mask != mask);
+    sum.islands_erased += obeying.changes.islands_erased;
+    sum.holes_filled += obeying.changes.holes_filled;
+  }
+  EXPECT_GT(sum.islands_erased, 0);
+  EXPECT_GT(sum.holes_filled, 0);
+}
+
+TEST(MaskRules, CountWhatTheyEraseAndFill) {
+  RunLayer mask(12);
+  mask.append_row(std::vector<int>{0, 5, 7, 8, 10, 11});
+  mask.append_row(std::vector<int>{0, 1, 2, 3, 4, 5, 7, 8});  // two holes of a pixel, side by side
+  mask.append_row(std::vector<int>{0, 5});
+  const ObeyingMask obeying = obeying_mask(mask, {3, 2});
+  EXPECT_EQ(obeying.changes, (RuleChanges{2, 2}));
+  EXPECT_EQ(obeying.mask.count(), 15);
+  EXPECT_EQ(obeying_mask(mask, {1, 1}).mask, mask);
+}
+
 TEST(MaskRules, CheckAroundAFlipSeesAllThatItCanBreak) {
   Random random;
   int refused = 0;

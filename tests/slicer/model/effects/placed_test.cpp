@@ -37,9 +37,8 @@ PrinterModel model(const EffectSpec& effect, const JobPlace& place = {{0, 0}, {4
 std::vector<int> printed(const EffectSpec& effect, int layer = 0) {
   const PrinterModel printer = model(effect);
   const RunLayer mask = bar();
-  std::vector<const RunLayer*> window(2 * static_cast<std::size_t>(printer.window_reach()) + 1,
-                                      nullptr);
-  window[window.size() / 2] = &mask;
+  const RunWindow window = RunWindow::around(
+      printer.window_reach(), [&](int offset) { return offset == 0 ? &mask : nullptr; });
   return middle_row(printer.print(window, layer));
 }
 
@@ -60,11 +59,9 @@ TEST(PlacedEffects, ShiftsWhatBleedsDownLikeTheLayerThatItComesFrom) {
       {kThreshold, {"z_bleed_down", {}, {{"share", {0.6}}}}, {"parity", {}, {{"by_mm", {0.2, 0}}}}},
       kGrid);
   const RunLayer mask = bar();
-  std::vector<const RunLayer*> window(2 * static_cast<std::size_t>(printer.window_reach()) + 1,
-                                      nullptr);
   const RunLayer powder = RunLayer::powder(mask.width(), mask.height());
-  window[window.size() / 2] = &powder;
-  window[window.size() / 2 + 1] = &mask;
+  const RunWindow window = RunWindow::around(
+      printer.window_reach(), [&](int offset) { return offset == 1 ? &mask : &powder; });
   EXPECT_EQ(middle_row(printer.print(window, 4)), (std::vector<int>{13, 23})) << "from layer 5";
   EXPECT_EQ(middle_row(printer.print(window, 5)), (std::vector<int>{17, 27})) << "from layer 6";
 }
@@ -177,7 +174,7 @@ TEST(PlacedEffects, BindsFlatFieldsWhereTheGainLiftsThemOverTheLevel) {
 
 TEST(PlacedEffects, CountsTheSolidShareOfABox) {
   const RunLayer mask = bar();
-  const RunLayer* const window[] = {nullptr, &mask, &mask};
+  const RunWindow window{nullptr, &mask, &mask};
   // A box far wider than the layer: 200 solid pixels in two of three layers.
   const DensityField field(window, kGrid, 10);
   const double side = 2 * 25 * 4 - 4;  // whole cells around the middle one
@@ -207,10 +204,7 @@ TEST(PlacedEffects, PrintWhatTheProbeSays) {
     if (!printer.form().wear.empty()) continue;  // the probe knows of the dose alone
     const DoseProbe probe(printer.form(), grid, place);
     for (int k = 0; k < layers; ++k) {
-      std::vector<const RunLayer*> window;
-      for (int n = k - printer.window_reach(); n <= k + printer.window_reach(); ++n) {
-        window.push_back(n < 0 || n >= layers ? nullptr : &masks[static_cast<std::size_t>(n)]);
-      }
+      const RunWindow window = runs_around(masks, k, printer.window_reach());
       const RunLayer out = printer.print(window, k);
       std::vector<DosePlace> places;
       for (int y = 0; y < out.height(); ++y) {

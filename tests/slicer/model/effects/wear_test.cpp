@@ -24,22 +24,13 @@ std::vector<RunLayer> layers_of(const Volume& v) {
   for (int k = 0; k < v.nz; ++k) out.push_back(whole::slice(v, k));
   return out;
 }
-std::vector<const RunLayer*> window_at(const std::vector<RunLayer>& layers, int k, int reach) {
-  std::vector<const RunLayer*> out;
-  for (int n = k - reach; n <= k + reach; ++n) {
-    out.push_back(n < 0 || n >= static_cast<int>(layers.size())
-                      ? nullptr
-                      : &layers[static_cast<std::size_t>(n)]);
-  }
-  return out;
-}
 // Each layer from a window no larger than the model asks for.
 Volume printed(const PrinterModel& model, const Volume& mask) {
   const std::vector<RunLayer> masks = layers_of(mask);
   std::vector<Shared<RunLayer>> out;
   for (int k = 0; k < mask.nz; ++k) {
     out.push_back(std::make_shared<const RunLayer>(
-        model.print(window_at(masks, k, model.window_reach()), k)));
+        model.print(runs_around(masks, k, model.window_reach()), k)));
   }
   return whole::stacked(out);
 }
@@ -224,7 +215,7 @@ TEST(Streak, BeginsAtAHeight) {
         {{"across", "x"}},
         {{"from_mm", {2}}, {"to_mm", {2.3}}, {"at_mm", {0.7}}, {"amount", {-0.8}}}}},
       kGrid, {{0, 0}, {6, 0.5}});
-  const RunLayer* const window[] = {&mask};
+  const RunWindow window{&mask};
   const auto row = [](const RunLayer& out) {
     return std::vector<int>{out.row(2).begin(), out.row(2).end()};
   };

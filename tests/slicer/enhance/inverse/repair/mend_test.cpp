@@ -44,7 +44,8 @@ Stretch::Layers printed(const InverseSolver& solver, const Volume& target, const
   }
   Stretch::Layers out;
   for (int k = 0; k < masks.nz; ++k) {
-    const std::array three{layer_at(prints, k - 1), layer_at(prints, k), layer_at(prints, k + 1)};
+    const Stretch::Layers three{layer_at(prints, k - 1), layer_at(prints, k),
+                                layer_at(prints, k + 1)};
     out.push_back(std::make_shared<const PrintedLayer>(with_missing(solver.by(), three)));
   }
   return out;
