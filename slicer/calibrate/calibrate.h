@@ -10,18 +10,15 @@
 namespace binderjet {
 
 struct CalibrationLimits {
-  // Fixed before any print is looked at. An effect is claimed only if it is this unlikely to be
-  // chance among all candidates, takes this share of the residual's power where the fit did not
-  // look, and this share of the printed error on layers that the fit did not see.
-  double most_p = 0.01;
-  double least_share = 0.015;
-  // Signs of k cells drawn at random are all kept in 2^-k of the draws, so what acts in five of the
-  // cells (an edge, a few layers) never has a p below 0.03, however strong it is. Its size is asked
-  // for instead: a share that chance never came near (100 prints with nothing hidden: 0.002 at
-  // most).
+  // Fixed before any print is looked at (slicer/MODEL.md, How calibrate chooses, has the reasons).
+  double most_p = 0.01;        // chance, over all candidates together
+  double least_share = 0.015;  // of the residual's power, where the fit did not look
+  double least_gain = 0.04;    // of the printed error, on layers that the fit did not see
+  // k cells keep all their signs in 2^-k of the draws, so what acts in five cells (an edge, a few
+  // layers) has p >= 0.03 however strong it is. From large_share on p up to most_p_of_large is
+  // enough: 100 prints with nothing hidden reached a share of 0.002.
   double large_share = 0.1;
   double most_p_of_large = 0.05;
-  double least_gain = 0.04;
   int most_effects = 6;
 
   bool sure(double p, double share) const {
@@ -33,9 +30,13 @@ struct CalibrationLimits {
 // if the prints say that there is something (far_above_floor()), else kNone.
 Verdict verdict_of(const std::vector<FoundEffect>& effects, bool far_above);
 
-// Whether what is left can be no chance. Where only noise parts model and print, two prints differ
-// by at least as much as either does from the model, since both have noise: half as much again is
-// none. A scanner adds blur, which replicates share and no model has: three times as much there.
+// Whether the print is farther from the model than chance allows:
+//
+//   wrong(model, print) > f * wrong(print 1, print 2)       f = 1.5; 3 for prints that were scanned
+//
+// With noise alone f could be 1: two noisy prints differ from each other by at least as much as
+// either differs from the model. A scanner blurs both prints alike and the model not at all, so
+// there f is larger. One print alone gives no floor, and then the answer is no.
 bool far_above_floor(const BeforeAfter& score, bool scanned);
 
 // `checks` are prints of the same printer that the fit never sees. `step` is told what is being

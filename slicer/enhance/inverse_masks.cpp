@@ -32,8 +32,10 @@ std::vector<InverseTurn> inverse_turns(const InverseSolver& solver) {
   const auto rescue = [](RescueAim aim) {
     return [aim](const InverseSolver& by, LayerWindow layers) { return by.rescue(layers, aim); };
   };
-  const auto improve = [](bool anew) {
-    return [anew](const InverseSolver& by, LayerWindow layers) { return by.improve(layers, anew); };
+  const auto improve = [](bool from_scratch) {
+    return [from_scratch](const InverseSolver& by, LayerWindow layers) {
+      return by.improve(layers, from_scratch);
+    };
   };
   add_round("improve", improve(true));
   if (solver.stride() > 1 || solver.follows_density()) add_round("improve again", improve(false));
@@ -44,8 +46,12 @@ std::vector<InverseTurn> inverse_turns(const InverseSolver& solver) {
   return turns;
 }
 
-// Blocks of layers are mended while those on each side stay, then blocks that begin halfway, so
-// that every fault lies well within one.
+// Mending goes over the job twice, in blocks of 16 layers that begin at different places:
+//
+//   round 1    |0 ......... 15|16 ........ 31|
+//   round 2  ...... 7|8 ......... 23|24 ......     a fault across a border lies inside a block here
+//
+// While a block is mended the blocks beside it stay as they are, so blocks are mended side by side.
 constexpr int kMendLayers = 16;
 constexpr std::array<BlockForm, 2> kMendRounds{BlockForm{kMendLayers, 0},
                                                BlockForm{kMendLayers, kMendLayers / 2}};

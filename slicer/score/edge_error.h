@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Edge placement error: how far from each edge that is wanted the nearest printed edge is.
+// Edge placement error: how far from each edge that is wanted the nearest printed edge is
+// (slicer/MODEL.md, Scores).
 #pragma once
 
 #include <cstdint>

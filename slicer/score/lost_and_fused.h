@@ -2,9 +2,10 @@
 // The voxels of a layer that a print loses or fuses: whole features, not skins that are a little
 // thin or thick (slicer/MODEL.md, Faults).
 //
-// Lost: a target voxel is worn where it is not printed but a path within the target leads to a
-// voxel that is printed: at most one layer up or down, and at most kWornMm along x and along y. A
-// target voxel that is neither printed nor worn is lost. A row through a wall, '#' printed, 'w'
+// Lost: a target voxel that is not printed is worn, and not lost, where a path within the target
+// leads to a printed one: within its slice at most kWornMm along x and along y (whole voxels,
+// rounded down), then straight up or down into the layer beside, at most one. A target voxel that
+// is neither printed nor worn is lost. A row through a wall, '#' printed, 'w'
 // worn, 'L' lost, for a kWornMm of two voxels:
 //
 //   target   ..##########..     ..##########..

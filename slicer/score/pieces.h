@@ -1,6 +1,14 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Parts of the target and pieces of the print, numbered while the layers pass by: a part that comes
-// out in several pieces has loose ones, a piece that holds several parts has joined them.
+// out in several pieces has loose ones, a piece that holds several parts has joined them
+// (slicer/MODEL.md, Faults).
+//
+// Runs of target and print get the numbers of their regions, slice after slice. Where a run of the
+// target and a run of the print share a voxel, the pair (part, piece) is noted: a part in two pairs
+// is in pieces, a piece in two pairs joins.
+//
+// WARNING: unlike RegionFinder, which forgets a region at its end, this keeps a number for every
+// region until the end, so memory grows with how many regions a job has (not with their size).
 #pragma once
 
 #include <cstdint>
@@ -56,9 +64,12 @@ class PieceFinder {
   // The number of the piece that this one has become a part of.
   int root(int piece) { return pieces_.root(piece); }
 
-  // What comes off parts in several pieces: the pieces of each but its largest. Who has added a
-  // part of a job only says which regions may go on beyond it: they are none, and what comes off
-  // them is loose whatever its size.
+  // The loose pieces: of each part that came out as more than one piece, all pieces but the
+  // largest.
+  //
+  // `goes_on(piece)` is for who has added some layers of a job only: whether the piece may go on
+  // beyond them. A piece that goes on is not loose, since what holds it may lie beyond; all other
+  // pieces of its part are loose, even the largest.
   std::vector<Region> loose(const std::function<bool(const Region&)>& goes_on = {});
   // Where parts hang together in the print: the bridges between them, or the whole piece where no
   // straight way joins them. Only with Contacts::kFind.

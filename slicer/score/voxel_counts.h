@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// How far the printed voxels are from the target (DESIGN section 5), added up layer by layer.
+// How far the printed voxels are from the target (slicer/MODEL.md, Scores), added up
+// layer by layer.
 #pragma once
 
 #include <cstdint>

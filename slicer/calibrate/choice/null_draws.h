@@ -1,6 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What a gain counted in cells is worth: cells are larger than the residual is correlated over, so
-// under chance their signs are coins.
+// Chance, for gains that are counted in cells. Cells are larger than the residual is correlated
+// over, so if nothing is hidden in a print, a cell's gain might as well have been a loss:
+//
+//   draw     each of the 125 cells gets a sign, + or - with even odds
+//   null     the best of all candidates after the draw's signs were applied
+//   p        (1 + draws whose null reaches the real best) / (1 + 499)
+//
+// "The best of all" counts every candidate that was tried: trying more makes each less sure.
 #pragma once
 
 #include <span>

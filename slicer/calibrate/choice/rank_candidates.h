@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Which candidate the residual points to, without fooling itself (slicer/MODEL.md, "How
-// calibrate chooses").
+// Which candidate the residual points to (slicer/MODEL.md, How calibrate chooses): every candidate
+// is fitted in folds, ranked by what it takes where the fit did not look, and judged against
+// chance.
 #pragma once
 
 #include <vector>
@@ -21,9 +22,10 @@ struct ScoredCandidate {
   bool equal = false;
 };
 
-// `known` are columns of what is already in the model; the residual and the candidates are made
-// orthogonal to them. The best first, then the best of each other kind and dependence that takes at
-// least four fifths as much; none if there are too few points or nothing takes any.
+// `known`: columns of what the model has already; what they explain of the residual and of the
+// candidates is taken out first. Returns the best first: those equal to the best (simplest first),
+// then others with at least 4/5 of its share, one for each kind, axis and form. Empty with fewer
+// than 500 points, or if no candidate gains anything.
 std::vector<ScoredCandidate> rank_candidates(const MeasuredJob& job, const EffectList& model,
                                              const std::vector<SurfacePoint>& points,
                                              const std::vector<std::vector<float>>& known,

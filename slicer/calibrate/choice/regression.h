@@ -1,6 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Least squares of the residual on candidates, cell by cell, so that folds and nulls are sums over
-// cells and no candidate is computed twice.
+// Least squares of the residual r on a candidate's columns X, kept as normal equations of each
+// cell k, the sums running over the points in k:
+//
+//   A_k = sum of x x'      b_k = sum of x r
+//
+// A fit on any set of cells solves (sum of A_k) c = sum of b_k, and what c takes of cell k is
+// 2 c.b_k - c.A_k c. So folds and null draws are sums over 125 small systems, and no column is
+// evaluated twice, however many folds and draws there are.
 #pragma once
 
 #include <Eigen/Dense>
@@ -65,12 +71,15 @@ class FittedAlready {
 // The score of a candidate: fitted on all cells, and what it takes of each where the fit did not
 // look.
 struct Score {
-  bool usable = false;
+  bool usable = false;  // its columns are neither empty nor dependent, and apply() takes the fit
   Vector fit;
   std::vector<double> gain;  // per cell, mean over the axes of the folds
   double held_out = 0;       // sum of gain, as a share of the residual's power
   bool folds_agree = false;
-  Matrix white;  // per cell, the right sides as they count in the gain: gain = |sum of columns|^2
+  // Per cell a column w_k = L^-1 b_k (L L' = sum of all A_k, columns scaled to unit length): with
+  // signs s_k the candidate gains |sum of s_k w_k|^2 on all cells, so a null draw costs as many
+  // products as there are columns times cells.
+  Matrix white;
 };
 
 // `power` is that of the residual.

@@ -1,11 +1,14 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The residual: how much dose a model misses where the measured surface is.
 //
-// Each edge between a voxel that the model prints and one that it does not is paired with the
-// nearest measured edge of the same sign in its row or column. There the true dose equals the
-// level, so level - dose of the model is what the model misses (slicer/MODEL.md, "How calibrate
-// chooses"). What a candidate would add is looked up at the *model's* edge: at the measured one it
-// would be correlated with the noise that put the edge there.
+//   model's print     # # # # . . . .        edge e of the model
+//   measured          # # # # # # . .        the nearest measured edge of the same sign in the row
+//   missing(e)        level - dose of the model at the measured edge
+//
+// At the measured edge the true dose is the level, so `missing` is what the model lacks, in its own
+// unit (slicer/MODEL.md, How calibrate chooses). What a candidate would add is looked up at the
+// *model's* edge: at the measured one it would be correlated with the noise that put the edge
+// there.
 #pragma once
 
 #include <array>

@@ -51,9 +51,9 @@ InverseLayer InverseSolver::plain(int number, Shared<VoxelLayer> target) const {
   return {std::move(target), std::move(sliced), std::move(obeying), {}, number};
 }
 
-InverseLayer InverseSolver::improve(LayerWindow layers, bool anew) const {
+InverseLayer InverseSolver::improve(LayerWindow layers, bool from_scratch) const {
   LayerSearch search(search_, layers);
-  search.run(anew);
+  search.run(from_scratch);
   InverseLayer out = *layer_at(layers, 0);
   auto mask = std::make_shared<const RunLayer>(search.mask());
   if (no_worse_than_plain(layers, search_.printer, search_.offsets, *mask))

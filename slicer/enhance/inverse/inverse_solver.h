@@ -1,11 +1,14 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Inverse: the mask whose print is nearest to the target, found by search on the printer model.
 //
+//   cost(mask) = sum over models m of weight_m * sum over voxels of (wrong slices under m)
+//   weight     = 2 for the nominal model, 1 for each corner of the process window
+//
 // Lithography's problem (blur, threshold, find the mask) on powder. A layer's mask is improved
 // while the masks around it stay: it begins where a straight edge would have to be, then single
-// pixels flip as long as fewer voxels come out wrong. What counts is the mean over the process
-// window, the nominal model most, so that a mask is also right on a printer that is a little off. A
-// mask that prints any layer worse than the plain masks do is dropped.
+// pixels flip as long as the cost falls. The corners count so that a mask is also right on a
+// printer that is a little off. A mask that prints any layer worse than the plain masks do is
+// dropped.
 #pragma once
 
 #include <memory>
@@ -20,16 +23,16 @@
 
 namespace binderjet {
 
-// Why a pixel is on or off.
+// Why a pixel is on or off: the print as it is, and the print if the pixel were in the other state.
 struct PixelReasons {
   bool on = false;
-  double target_share = 0;           // of its voxels
-  double level = 0;                  // at which powder binds
-  std::vector<double> dose;          // of its voxels, row by row
-  std::vector<double> dose_flipped;  // the same if the pixel were in the other state
-  int nominal_cost = 0;              // how many more voxels were wrong then
-  int window_cost = 0;               // and by weight over the process window
-  bool rules_allow = true;           // it to be in the other state
+  double target_share = 0;           // share of the pixel's voxels (all slices) that are target
+  double level = 0;                  // the dose from which on powder binds
+  std::vector<double> dose;          // of the pixel's voxels as it is, row by row
+  std::vector<double> dose_flipped;  // of the same voxels with the pixel in the other state
+  int nominal_cost = 0;              // wrong voxels of the nominal model that the flip would add
+  int window_cost = 0;               // the same, weighted over the process window
+  bool rules_allow = true;           // whether the mask rules allow the flip
 };
 
 class InverseSolver {
@@ -42,29 +45,30 @@ class InverseSolver {
   int reach() const { return 2 * search_.printer.window_reach() + 1; }
   // The same for settle().
   int print_reach() const { return search_.printer.window_reach(); }
-  // Layers so many apart (or a multiple) print into no common layer, so all of them may be improved
-  // at once and none spoils what another one saw.
+  // The layers k and k + stride() print into no common layer. So every stride()-th layer can be
+  // improved at once: none of them changes a print that another one judged by.
   int stride() const { return stride_; }
-  // Whether a layer's print also depends on other layers' masks through their density, which a
-  // search takes as it is: then layers are to be improved again.
+  // Whether gains depend on the masks' density. A search takes the density as it is, so when masks
+  // have changed all layers must be improved once more.
   bool follows_density() const {
     return search_.printer.form().placed.density_radius_mm.has_value();
   }
 
-  // What it goes by; the mending of many layers (slicer/enhance/inverse/repair/mend.h) wants it
-  // too.
+  // The model and the rules that the search goes by, for the repair of many layers
+  // (slicer/enhance/inverse/repair/mend.h).
   const SearchModel& by() const { return search_; }
 
   // Layer `number` of the job with its plain mask, or what the rules leave of it.
   InverseLayer plain(int number, Shared<VoxelLayer> target) const;
-  // The middle layer with a better mask; `anew` forgets its mask so far. No layer prints worse than
-  // with plain masks, unless it did before (nominal model, wrong voxels).
-  InverseLayer improve(LayerWindow layers, bool anew) const;
+  // The middle layer with a better mask. With `from_scratch` its mask so far is forgotten. The mask
+  // is kept as it was if the new one gives any layer more wrong voxels (nominal model) than the
+  // plain masks do and than it has now.
+  InverseLayer improve(LayerWindow layers, bool from_scratch) const;
   // The same with fewer faults that voxels alone do not show
   // (slicer/enhance/inverse/repair/rescue.h), if it has any.
   InverseLayer rescue(LayerWindow layers, RescueAim aim) const;
-  // The middle layer without what prints where no part is, if anything still does once the others
-  // are as they are; with its plain mask again if its print is worse than plain.
+  // The middle layer after spurious print was taken back to the plain mask, further and further
+  // around it; the plain mask altogether if the layer then prints worse than plain.
   InverseLayer settle(LayerWindow layers) const;
   // Of pixel (x, y) of the middle layer, its mask so far.
   PixelReasons reasons(LayerWindow layers, int x, int y) const;

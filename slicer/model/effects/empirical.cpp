@@ -7,7 +7,9 @@
 //        | "layer": the number of the layer, from 0 on the bed
 //        | "direction": the place along direction_deg (from x, 0, to y, 90), in mm
 //        | "density": the solid share within radius_mm
-//        | "edge_distance": the way from the side of the job's box, in mm
+//        | "edge_distance": the way from the side of the job's box, in mm (a trap: of the box, not
+//        of
+//          the part within it)
 //        | "position": the way from center_mm = [x, y]
 //   form = "trend":    f(u) = amount (u - from), within -0.9 and 0.9
 //        | "step":     amount from `at` on

@@ -7,8 +7,10 @@
 
 namespace binderjet {
 
-// The printed voxels outside the target in the boxes of the layer's spurious faults, as the layer
-// shows them by itself: what a layer beside it holds to a part is spurious here, too.
+// The printed voxels outside the target in the bounding box of each region of the print that holds
+// no voxel of any slice of the target. Regions are connected by sides within the layer, so what a
+// layer beside this one holds to a part is spurious here, too. Whole boxes are taken: a little of a
+// good neighbor within the box may be among them.
 RunLayer spurious_print(const VoxelLayer& target, const RunLayer& printed);
 
 }  // namespace binderjet

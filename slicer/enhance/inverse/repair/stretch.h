@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A stretch of layers with their prints, whose masks may be patched as long as that leaves less
-// lost, fused, spurious and loose.
+// A run of layers with their prints. Patches of their masks are tried one by one, and a patch is
+// kept only if it leaves less weight of faults (lost, fused, spurious, loose).
 #pragma once
 
 #include <cstdint>
@@ -24,15 +24,15 @@ struct PrintedLayer {
   Shared<LostAndFused> missing;
 };
 
-// The middle layer of a window of window_reach() on each side with its print ...
+// The middle layer of a window of window_reach() layers on each side, with its print.
 PrintedLayer with_print(const SearchModel& by, LayerWindow layers);
-// ... and of three such layers the middle one with what of it is lost and fused.
+// The middle one of three printed layers, with what of it is lost and fused.
 PrintedLayer with_missing(const SearchModel& by, const Window<PrintedLayer>& three);
 
 // Pixels of some layers that get others, counted from the stretch's first layer.
 struct Patch {
-  // From the plain mask alone, from its union with the mask so far, or from what both have; or from
-  // the mask of the layer `copied`.
+  // plain: the plain mask. with_plain: the union of the plain mask and the mask so far.
+  // common_with_plain: their intersection. copy: the mask of the layer `copied`.
   enum class Filling { plain, with_plain, common_with_plain, copy };
 
   LayerRange layers;
@@ -51,7 +51,7 @@ class Stretch {
   using Layers = std::vector<Shared<PrintedLayer>>;
   struct Faults {
     std::vector<Fault> found;  // in voxels and slices from the stretch's first
-    std::int64_t weight = 0;
+    std::int64_t weight = 0;   // a fixed weight for each fault, plus its voxels
   };
 
   Stretch(const SearchModel& by, Layers layers, int job_layers);
@@ -62,8 +62,9 @@ class Stretch {
 
   // The same without what lies outside these pixels or layers.
   Stretch cut(const Rect& pixels, LayerRange range);
-  // Changes the layers if that leaves less wrong, and no layer prints worse than with plain masks,
-  // or than it did when it was first looked at; says whether it did.
+  // Tries the patch. Keeps it, and returns true, if the faults weigh less afterwards and no layer
+  // has more wrong voxels than the larger of: with its plain masks, and with its masks when it was
+  // first asked about. Costs the prints of the patched layers and of window_reach() beside them.
   bool take(const Patch& patch);
 
  private:
@@ -79,10 +80,10 @@ class Stretch {
 
   const SearchModel* by_;
   Layers layers_;
-  Rect box_;    // in voxels; what is outside was cut off ...
-  Rect whole_;  // ... from this
-  bool open_below_;
-  bool open_above_;
+  Rect box_;         // the part of the job's box that cut() has left, in voxels
+  Rect whole_;       // the job's box, in voxels
+  bool open_below_;  // the job goes on below the first of these layers
+  bool open_above_;  // and above the last
   std::map<int, std::int64_t> most_wrong_;  // by layer, as far as it was asked for
   Faults faults_;
 };

@@ -76,9 +76,9 @@ void LayerSearch::find_tiles() {
   }
 }
 
-void LayerSearch::run(bool anew) {
+void LayerSearch::run(bool from_scratch) {
   const SearchStart start;
-  search(tiles_, anew ? &start : nullptr);
+  search(tiles_, from_scratch ? &start : nullptr);
 }
 
 void LayerSearch::run_near(std::span<const RunLayer* const> places, const SearchStart& start) {
@@ -94,9 +94,9 @@ void LayerSearch::run_near(std::span<const RunLayer* const> places, const Search
   search(near, &start);
 }
 
-void LayerSearch::search(std::span<Tile> tiles, const SearchStart* anew) {
-  for (Tile& tile : tiles) look_over(tile, anew);
-  if (anew != nullptr) {
+void LayerSearch::search(std::span<Tile> tiles, const SearchStart* from_scratch) {
+  for (Tile& tile : tiles) look_over(tile, from_scratch);
+  if (from_scratch != nullptr) {
     // What a tile leaves of an island or a hole may lie beside it.
     const int most = by_.rules.most();
     for (const Tile& tile : tiles) {
@@ -108,7 +108,7 @@ void LayerSearch::search(std::span<Tile> tiles, const SearchStart* anew) {
 
 // Finds the pixels to search on. A pixel is settled where all voxels that it reaches want binder,
 // or none of them does.
-void LayerSearch::look_over(Tile& tile, const SearchStart* anew) {
+void LayerSearch::look_over(Tile& tile, const SearchStart* from_scratch) {
   TileSurroundings around(layers_, by_.offsets, places_, mask_);
   const LocalDose dose(by_.models, by_.grid, tile.rect, around);
   around.look_at(dose);
@@ -124,7 +124,7 @@ void LayerSearch::look_over(Tile& tile, const SearchStart* anew) {
       *wanted.at(x, y) = open ? sight.wanted : sight.least_cost < 0;
     }
   }
-  if (anew != nullptr) begin(tile, wanted, *anew, dose);
+  if (from_scratch != nullptr) begin(tile, wanted, *from_scratch, dose);
 }
 
 // With w(p) the share of the binder of pixel p that lands where binder is wanted:

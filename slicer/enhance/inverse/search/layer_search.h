@@ -43,8 +43,8 @@ class LayerSearch {
   // outlive this.
   LayerSearch(const SearchModel& by, LayerWindow layers);
 
-  // Searches the whole layer. With `anew` the mask so far is forgotten.
-  void run(bool anew);
+  // Searches the whole layer. With `from_scratch` the mask so far is forgotten.
+  void run(bool from_scratch);
   // Searches, from this start, the tiles whose pixels reach a voxel that is 1 in any of `places`.
   void run_near(std::span<const RunLayer* const> places, const SearchStart& start);
 
@@ -57,9 +57,9 @@ class LayerSearch {
   };
 
   void find_tiles();
-  // Without `anew` both keep the mask so far.
-  void search(std::span<Tile> tiles, const SearchStart* anew);
-  void look_over(Tile& tile, const SearchStart* anew);
+  // Without `from_scratch` both keep the mask so far.
+  void search(std::span<Tile> tiles, const SearchStart* from_scratch);
+  void look_over(Tile& tile, const SearchStart* from_scratch);
   void begin(const Tile& tile, const Plane<double>& wanted, const SearchStart& start,
              const LocalDose& dose);
   double wanted_at(int x, int y) const;
