@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "driver/verbs/calibrate_gauges.h"
+#include "driver/report/calibrate_gauges.h"
 
 #include <fmt/format.h>
 

@@ -2,7 +2,7 @@
 // calibration.json (DESIGN section 10).
 #pragma once
 
-#include <nlohmann/json.hpp>
+#include <nlohmann/json_fwd.hpp>
 #include <string>
 
 #include "slicer/calibrate/job/calibration.h"

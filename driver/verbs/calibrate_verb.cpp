@@ -6,6 +6,7 @@
 #include <CLI/CLI.hpp>
 #include <filesystem>
 #include <memory>
+#include <nlohmann/json.hpp>
 #include <string>
 #include <vector>
 
@@ -15,9 +16,9 @@
 #include "driver/job/mesh_scan_to_stack.h"
 #include "driver/job/print_stream.h"
 #include "driver/profile/write_profile.h"
+#include "driver/report/calibrate_gauges.h"
 #include "driver/report/calibration_json.h"
 #include "driver/report/calibration_report.h"
-#include "driver/verbs/calibrate_gauges.h"
 #include "driver/verbs/verbs.h"
 #include "slicer/base/error.h"
 #include "slicer/base/whole_file.h"
