@@ -8,6 +8,7 @@
 #include <atomic>
 #include <cmath>
 #include <csignal>
+#include <nlohmann/json.hpp>
 #include <utility>
 
 #include "slicer/base/error.h"

@@ -6,6 +6,7 @@
 #include <memory>
 
 #include "driver/base/layer_blocks.h"
+#include "driver/job/parts.h"
 #include "slicer/base/error.h"
 #include "slicer/color/separate.h"
 #include "slicer/stack/slice_stack.h"

@@ -1,18 +1,14 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "driver/job/job.h"
 
-#include <fmt/format.h>
-
 #include <algorithm>
-#include <filesystem>
 #include <nlohmann/json.hpp>
+#include <optional>
 #include <utility>
 
 #include "driver/base/files.h"
 #include "slicer/base/error.h"
 #include "slicer/base/strict_json.h"
-#include "slicer/mesh/read/read_mesh.h"
-#include "slicer/mesh/repair.h"
 
 namespace binderjet {
 namespace {
@@ -40,6 +36,16 @@ Source source_of(const Json& json, const std::string& where) {
   get_int(json.at("corner_px"), source.corner_px, where);
   source.placement.wall_mm = json.value("wall_mm", 0.0);
   return source;
+}
+
+Enhancement enhancement_in(const Json& json, const std::string& where) {
+  const auto text = json.at("enhance").get<std::string>();
+  const std::optional<Enhancement> known = enhancement_of(text);
+  if (!known) {
+    throw Error(ErrorKind::kBadInput, where,
+                "has masks of a kind that this program does not know: \"" + text + "\"");
+  }
+  return *known;
 }
 
 }  // namespace
@@ -74,7 +80,7 @@ std::string to_text(const JobHeader& header) {
                {"origin_mm", header.origin_mm()},
                {"margin_px", header.box.margin_px},
                {"bed_px", header.box.bed_px},
-               {"enhance", header.enhance},
+               {"enhance", word(header.enhance)},
                {"passes", header.passes},
                {"sources", sources},
                {"profile",
@@ -82,7 +88,7 @@ std::string to_text(const JobHeader& header) {
                  {"hash", text_hash(header.profile.text)},
                  {"text", header.profile.text}}}};
   // Only where it is, so that plain jobs stay byte for byte what they were.
-  if (header.enhance == "inverse") json["robust"] = header.robust;
+  if (header.enhance == Enhancement::kInverse) json["robust"] = header.robust;
   if (header.color) json["color"] = {{"enhanced", header.color_enhanced}};
   return json.dump();
 }
@@ -102,7 +108,7 @@ JobHeader parse_job_header(const std::string& text, const std::string& where) {
     get_int(json.at("bed_px"), header.box.bed_px, where);
     json.at("pitch_mm").get_to(header.grid.pitch_mm);
     get_int(json.at("detail_vx"), header.grid.detail_vx, where);
-    json.at("enhance").get_to(header.enhance);
+    header.enhance = enhancement_in(json, where);
     get_int(json.at("passes"), header.passes, where);
     header.robust = json.value("robust", true);
     header.color = json.contains("color");
@@ -118,117 +124,6 @@ JobHeader parse_job_header(const std::string& text, const std::string& where) {
     throw Error(ErrorKind::kBadInput, where,
                 std::string("has a header that this program does not read: ") + error.what());
   }
-}
-
-Part load_part(const std::string& file, std::optional<double> unit_mm, const Placement& placement,
-               bool with_paint) {
-  Part part;
-  part.source.file = file;
-  part.source.hash = file_hash(file);
-  MeshFile read = read_mesh(file);
-  if (file_hash(file) != part.source.hash) {
-    throw Error(ErrorKind::kBadInput, file, "changed while it was read; try again");
-  }
-  part.mesh = std::move(read.mesh);
-  if (with_paint) {
-    part.paint = std::move(read.paint);
-  } else {
-    read.paint = {};
-  }
-  part.warnings = std::move(read.warnings);
-  part.source.placement = placement;
-  part.source.placement.unit_mm = unit_mm.value_or(read.unit_mm);
-  const double wall =
-      placement.wall_mm / (part.source.placement.unit_mm * part.source.placement.scale);
-  const Repair repair = repair_mesh(part.mesh, file, wall);
-  for (const std::string& note : repair.notes) part.warnings.push_back(file + ": " + note);
-  for (const std::string& remark : repair.remarks) part.warnings.push_back(file + ": " + remark);
-  part.request.where = file;
-  part.request.size_mm = transform_part(part.mesh, part.source.placement, file,
-                                        {&part.paint.points, &part.paint.samples});
-  part.request.at_mm = placement.at_mm;
-  part.request.scale = placement.scale;
-  part.request.unit_declared = read.unit_declared || unit_mm.has_value();
-  const std::string doubt = doubtful_size(part.request);
-  part.doubtful_size = !doubt.empty();
-  if (part.doubtful_size) part.warnings.push_back(file + ": " + doubt);
-  return part;
-}
-
-std::shared_ptr<const ColorField> take_color(std::vector<Part>& parts, const Grid& grid,
-                                             const ColorSettings& settings,
-                                             std::vector<std::string>& warnings) {
-  std::vector<Source> sources;
-  for (const Part& part : parts) sources.push_back(part.source);
-  const std::array<int, 2> corner = lower_corner(sources);
-  std::vector<PartField> fields;
-  bool colored = false;
-  for (Part& part : parts) {
-    PartField field{bounding_box(part.mesh), nullptr};
-    for (std::size_t axis = 0; axis < 2; ++axis) {
-      const double shift_mm = (part.source.corner_px[axis] - corner[axis]) * grid.pitch_mm[axis];
-      field.box.min[axis] += shift_mm;
-      field.box.max[axis] += shift_mm;
-      if (shift_mm == 0) continue;
-      for (Point& point : part.paint.points) point[axis] += shift_mm;
-      for (Point& point : part.paint.samples) point[axis] += shift_mm;
-    }
-    std::vector<std::string> notes;
-    field.field = paint_field(std::move(part.paint), settings, notes);
-    for (const std::string& note : notes) warnings.push_back(part.source.file + ": " + note);
-    colored |= field.field != nullptr;
-    if (!field.field) field.field = plain_field(kWhite);
-    fields.push_back(std::move(field));
-  }
-  return colored ? bed_field(std::move(fields)) : nullptr;
-}
-
-Mesh merge_parts(std::vector<Part> parts, const Grid& grid) {
-  std::vector<Source> sources;
-  for (const Part& part : parts) sources.push_back(part.source);
-  const std::array<int, 2> corner = lower_corner(sources);
-  Mesh merged;
-  for (Part& part : parts) {
-    for (std::size_t axis = 0; axis < 2; ++axis) {
-      const int shift_px = part.source.corner_px[axis] - corner[axis];
-      if (shift_px == 0) continue;
-      for (Point& point : part.mesh.points) point[axis] += shift_px * grid.pitch_mm[axis];
-    }
-    if (merged.points.empty()) {
-      merged = std::move(part.mesh);
-      continue;
-    }
-    const int base = static_cast<int>(merged.points.size());
-    merged.points.insert(merged.points.end(), part.mesh.points.begin(), part.mesh.points.end());
-    for (const Triangle& t : part.mesh.triangles) {
-      merged.triangles.push_back({t[0] + base, t[1] + base, t[2] + base});
-    }
-  }
-  return merged;
-}
-
-std::shared_ptr<const Mesh> reload_parts(const JobHeader& header, const std::string& folder) {
-  std::vector<Part> parts;
-  for (const Source& source : header.sources) {
-    std::string file = source.file;
-    std::error_code error;
-    if (!std::filesystem::exists(file, error)) {
-      const auto beside = std::filesystem::path(folder) / std::filesystem::path(file).filename();
-      if (!std::filesystem::exists(beside, error)) {
-        throw Error(ErrorKind::kBadInput, file,
-                    "the model this job was made from is gone; put it back or beside the job");
-      }
-      file = beside.string();
-    }
-    if (file_hash(file) != source.hash) {
-      throw Error(ErrorKind::kBadInput, file,
-                  "has changed since this job was made from it; slice it again");
-    }
-    Part part = load_part(file, source.placement.unit_mm, source.placement);
-    part.source = source;
-    parts.push_back(std::move(part));
-  }
-  return std::make_shared<const Mesh>(merge_parts(std::move(parts), header.grid));
 }
 
 }  // namespace binderjet

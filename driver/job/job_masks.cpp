@@ -11,9 +11,9 @@ namespace binderjet {
 namespace {
 
 Pipeline<MaskLayer> enhanced(const JobHeader& header, const Pipeline<VoxelLayer>& target) {
-  if (header.enhance == "none") return plain_masks(target, header.grid);
+  if (header.enhance == Enhancement::kNone) return plain_masks(target, header.grid);
   const JobPlace place = place_of(header.box, header.grid);
-  if (header.enhance == "inverse") {
+  if (header.enhance == Enhancement::kInverse) {
     std::vector<PrinterModel> window = process_window(header.profile.effects, header.grid, place);
     if (!header.robust) window.resize(1, window.front());
     return inverse_masks(target, std::make_shared<const InverseSolver>(

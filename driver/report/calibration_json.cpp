@@ -2,6 +2,7 @@
 #include "driver/report/calibration_json.h"
 
 #include <algorithm>
+#include <nlohmann/json.hpp>
 
 namespace binderjet {
 namespace {

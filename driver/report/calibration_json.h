@@ -2,7 +2,7 @@
 // calibration.json: what calibrate found (slicer/MODEL.md, How calibrate chooses), for scripts.
 #pragma once
 
-#include <nlohmann/json.hpp>
+#include <nlohmann/json_fwd.hpp>
 #include <string>
 
 #include "slicer/calibrate/job/calibration.h"

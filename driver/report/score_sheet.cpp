@@ -88,9 +88,10 @@ ScoreSheet score_masks(const MaskSource& masks, const JobHeader& header,
 MaskSource enhanced_masks(const MaskSource& job, JobHeader header,
                           const std::shared_ptr<const Mesh>& target, const Console& console) {
   constexpr int kPaperPasses = 2;
-  if (header.enhance == "paper" && header.passes == 0) header.passes = kPaperPasses;
+  if (header.enhance == Enhancement::kPaper && header.passes == 0) header.passes = kPaperPasses;
   const auto stream = job_masks(header, target).layers(job.layers());
-  Progress progress(console, "enhancing (" + header.enhance + ")", job.size_px[2]);
+  Progress progress(console, "enhancing (" + std::string(word(header.enhance)) + ")",
+                    job.size_px[2]);
   const auto layers = std::make_shared<std::vector<RunLayer>>();
   while (stream->rest().size() > 0) {
     for (const Shared<MaskLayer>& layer : stream->next(kBlockLayers)) {

@@ -10,12 +10,16 @@
 #include <filesystem>
 #include <fstream>
 #include <functional>
+#include <nlohmann/json.hpp>
 #include <thread>
 #include <utility>
 #include <vector>
 
 #include "driver/base/transport_errors.h"
+#include "driver/job/encoded_layers.h"
 #include "driver/job/layer_queue.h"
+#include "driver/job/parts.h"
+#include "driver/job/slice_plan.h"
 #include "driver/send/whole_job_file.h"
 #include "slicer/base/error.h"
 #include "transport/open/open_backend.h"

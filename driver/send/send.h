@@ -7,12 +7,8 @@
 #include <string>
 
 #include "driver/base/console.h"
-#include "driver/job/slice_plan.h"
+#include "driver/job/slice_options.h"
 #include "transport/base/backend.h"
-
-namespace CLI {
-class App;
-}
 
 namespace binderjet {
 
@@ -32,8 +28,5 @@ void resume_job(const Console& console, const std::string& id, const std::string
 
 // Whether the file begins as a job does.
 bool is_job_file(const std::string& path);
-
-// status, cancel, resume and devices.
-void add_queue_verbs(CLI::App& program);
 
 }  // namespace binderjet

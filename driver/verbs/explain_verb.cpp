@@ -5,11 +5,13 @@
 #include <CLI/CLI.hpp>
 #include <filesystem>
 #include <memory>
+#include <nlohmann/json.hpp>
 #include <string>
 #include <vector>
 
 #include "driver/base/console.h"
 #include "driver/job/mask_source.h"
+#include "driver/job/parts.h"
 #include "driver/verbs/verbs.h"
 #include "slicer/base/error.h"
 #include "slicer/enhance/inverse/inverse_solver.h"

@@ -3,7 +3,10 @@
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
+#include <array>
 #include <memory>
+#include <nlohmann/json.hpp>
 #include <string>
 #include <vector>
 
@@ -25,7 +28,7 @@ namespace {
 struct ExportOptions {
   std::string job;
   std::string out;
-  std::string what = "mask";
+  std::string what = "mask";  // one of stack_words()
   std::string cuberille;
   std::string html;
   std::string volume;  // --3mf
@@ -44,19 +47,71 @@ void export_cuberille(const MaskSource& job, const std::string& path, const Cons
   writer.finish();
 }
 
-struct Output {
-  std::string what;
+// What can be written: stacks of images, in a folder, and single files.
+enum class Output {
+  kMasks,
+  kColor,
+  kTarget,
+  kPrinted,
+  kColorPlanes,
+  kCuberille,
+  kHtml,
+  k3mf,
+  kZip
+};
+
+const char* word(Output output) {
+  switch (output) {
+    case Output::kMasks:
+      return "mask";
+    case Output::kColor:
+      return "color";
+    case Output::kTarget:
+      return "target";
+    case Output::kPrinted:
+      return "printed";
+    case Output::kColorPlanes:
+      return "cmy";
+    case Output::kCuberille:
+      return "cuberille";
+    case Output::kHtml:
+      return "html";
+    case Output::k3mf:
+      return "3mf";
+    case Output::kZip:
+      break;
+  }
+  return "zip";
+}
+
+constexpr std::array kStacks{Output::kMasks, Output::kColor, Output::kTarget, Output::kPrinted};
+
+std::vector<std::string> stack_words() {
+  std::vector<std::string> words;
+  for (const Output stack : kStacks) words.emplace_back(word(stack));
+  return words;
+}
+
+Output stack_of(const ExportOptions& options) {
+  if (!options.separate.empty()) return Output::kColorPlanes;
+  return *std::find_if(kStacks.begin(), kStacks.end(),
+                       [&](Output stack) { return options.what == word(stack); });
+}
+
+struct NamedOutput {
+  Output output;
   std::string path;
 };
 
 // The one place that the command line names to write to.
-Output only_output(const ExportOptions& options) {
-  const std::string stack = options.separate.empty() ? options.what : options.separate;
-  std::vector<Output> named;
-  for (const Output& output :
-       {Output{stack, options.out}, Output{"cuberille", options.cuberille},
-        Output{"html", options.html}, Output{"3mf", options.volume}, Output{"zip", options.zip}}) {
-    if (!output.path.empty()) named.push_back(output);
+NamedOutput only_output(const ExportOptions& options) {
+  std::vector<NamedOutput> named;
+  for (const NamedOutput& each :
+       {NamedOutput{stack_of(options), options.out},
+        NamedOutput{Output::kCuberille, options.cuberille},
+        NamedOutput{Output::kHtml, options.html}, NamedOutput{Output::k3mf, options.volume},
+        NamedOutput{Output::kZip, options.zip}}) {
+    if (!each.path.empty()) named.push_back(each);
   }
   if (named.size() != 1) {
     throw Error(ErrorKind::kUsage, "export",
@@ -65,37 +120,44 @@ Output only_output(const ExportOptions& options) {
   return named.front();
 }
 
+void write(const MaskSource& job, const NamedOutput& named, bool full_bed, const Console& console) {
+  const std::string& path = named.path;
+  switch (named.output) {
+    case Output::kMasks:
+      return export_masks(job, path, full_bed, console);
+    case Output::kColor:
+      return export_color(job, path, console);
+    case Output::kTarget:
+      return export_target(job, path, console);
+    case Output::kPrinted:
+      return write_printed(job,
+                           PrinterModel(job.header->profile.effects, job.header->grid, job.place()),
+                           job.header->grid, path, console);
+    case Output::kColorPlanes:
+      return export_planes(job, path, console);
+    case Output::kCuberille:
+      return export_cuberille(job, path, console);
+    case Output::kHtml:
+      return write_text(path, viewer_page(job, console));
+    case Output::k3mf:
+      return export_3mf(job, path, console);
+    case Output::kZip:
+      return export_zip(job, path, full_bed, console);
+  }
+}
+
 void run(const ExportOptions& options, const Console& console) {
-  const Output output = only_output(options);
+  const NamedOutput named = only_output(options);
   if (!options.separate.empty() && options.out.empty()) {
     throw Error(ErrorKind::kUsage, "--separate", "needs a folder, -o DIR");
   }
-  if (options.full_bed && output.what != "mask" && output.what != "zip") {
+  if (options.full_bed && named.output != Output::kMasks && named.output != Output::kZip) {
     throw Error(ErrorKind::kUsage, "--full-bed", "is for masks only");
   }
   const MaskSource job = open_job(options.job, console);
-  if (output.what == "cuberille") {
-    export_cuberille(job, output.path, console);
-  } else if (output.what == "html") {
-    write_text(output.path, viewer_page(job, console));
-  } else if (output.what == "3mf") {
-    export_3mf(job, output.path, console);
-  } else if (output.what == "zip") {
-    export_zip(job, output.path, options.full_bed, console);
-  } else if (output.what == "cmy") {
-    export_planes(job, output.path, console);
-  } else if (output.what == "color") {
-    export_color(job, output.path, console);
-  } else if (output.what == "mask") {
-    export_masks(job, output.path, options.full_bed, console);
-  } else if (output.what == "target") {
-    export_target(job, output.path, console);
-  } else {
-    write_printed(job, PrinterModel(job.header->profile.effects, job.header->grid, job.place()),
-                  job.header->grid, output.path, console);
-  }
-  console.result({{"out", output.path}, {"what", output.what}, {"layers", job.size_px[2]}},
-                 fmt::format("{}: {} layers", output.path, job.size_px[2]));
+  write(job, named, options.full_bed, console);
+  console.result({{"out", named.path}, {"what", word(named.output)}, {"layers", job.size_px[2]}},
+                 fmt::format("{}: {} layers", named.path, job.size_px[2]));
 }
 
 }  // namespace
@@ -109,7 +171,7 @@ void add_export_verb(CLI::App& program) {
                    "mask: what is sent; color: its color; target: the voxels we want; printed: "
                    "what the model "
                    "says comes out")
-      ->check(CLI::IsMember({"mask", "color", "target", "printed"}))
+      ->check(CLI::IsMember(stack_words()))
       ->capture_default_str();
   verb->add_option("--separate", options->separate,
                    "cmy: the color as 1-bit planes, in the folders cyan, magenta and yellow")

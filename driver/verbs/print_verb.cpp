@@ -5,7 +5,7 @@
 #include <string>
 
 #include "driver/base/console.h"
-#include "driver/job/slice_plan.h"
+#include "driver/job/slice_options.h"
 #include "driver/send/send.h"
 #include "driver/verbs/verbs.h"
 #include "slicer/base/error.h"
@@ -50,7 +50,6 @@ void add_print_verb(CLI::App& program) {
   add_slice_options(*verb, options->slice);
   const auto console = add_console_options(*verb);
   verb->callback([options, console] { print(*options, *console); });
-  add_queue_verbs(program);
 }
 
 }  // namespace binderjet

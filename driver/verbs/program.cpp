@@ -22,6 +22,7 @@ std::unique_ptr<CLI::App> make_program() {
   add_calibrate_verb(*program);
   add_join_verb(*program);
   add_print_verb(*program);
+  add_queue_verbs(*program);
   add_profile_verb(*program);
   return program;
 }

@@ -5,12 +5,14 @@
 #include <CLI/CLI.hpp>
 #include <chrono>
 #include <memory>
+#include <nlohmann/json.hpp>
 #include <string>
 #include <vector>
 
 #include "driver/base/console.h"
 #include "driver/base/transport_errors.h"
 #include "driver/send/send.h"
+#include "driver/verbs/verbs.h"
 #include "slicer/base/error.h"
 #include "transport/usb/usb_backend.h"
 

@@ -12,6 +12,7 @@
 
 #include "driver/base/console.h"
 #include "driver/job/mask_source.h"
+#include "driver/job/parts.h"
 #include "driver/report/score_map.h"
 #include "driver/report/score_sheet.h"
 #include "driver/verbs/verbs.h"
@@ -99,8 +100,9 @@ void score(const ScoreOptions& options, const Console& console) {
     for (const FaultKind kind : kFaultKinds) text += fmt::format(" {:>8}", word(kind));
     JobHeader other = header;
     other.profile = profile;
-    for (const std::string enhance : {"none", "paper", "inverse"}) {
-      other.enhance = enhance;
+    for (const Enhancement each : kEnhancements) {
+      const std::string enhance = word(each);
+      other.enhance = each;
       const MaskSource masks = enhanced_masks(job, other, target, console);
       const ScoreSheet sheet =
           score_masks(masks, header, target, models, "scoring (" + enhance + ")", console);

@@ -8,6 +8,7 @@
 #include <optional>
 
 #include "driver/base/transport_errors.h"
+#include "driver/job/encoded_layers.h"
 #include "driver/job/slice_plan.h"
 #include "driver/verbs/verbs.h"
 #include "transport/job/job_file.h"

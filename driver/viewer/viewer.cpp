@@ -15,6 +15,7 @@
 #include <vector>
 
 #include "driver/base/html.h"
+#include "driver/job/parts.h"
 #include "driver/job/print_stream.h"
 #include "driver/job/run_codec.h"
 #include "driver/viewer/viewer_page.h"
@@ -88,7 +89,7 @@ nlohmann::ordered_json description(const MaskSource& job, bool target, int step)
       {"name", std::filesystem::path(job.path).filename().string()},
       {"about", fmt::format("{} layers of {} mm, {} x {} pixels, {}", job.size_px[2],
                             job.pitch_mm[2], job.size_px[0], job.size_px[1], header.profile.name)},
-      {"enhance", header.enhance},
+      {"enhance", word(header.enhance)},
       {"size_px", job.size_px},
       {"first", job.first},
       {"pitch_mm", job.pitch_mm},

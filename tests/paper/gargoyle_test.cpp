@@ -9,7 +9,7 @@
 #include <iostream>
 #include <optional>
 
-#include "driver/job/job.h"
+#include "driver/job/parts.h"
 #include "slicer/score/score.h"
 #include "tests/paper/relief.h"
 #include "tests/support/vector_stream.h"

@@ -23,6 +23,7 @@ class PrintVerb : public testing::Test {
   std::string run(const std::vector<std::string>& words) {
     CLI::App program;
     add_print_verb(program);
+    add_queue_verbs(program);
     add_join_verb(program);
     std::vector<std::string> reversed(words.rbegin(), words.rend());  // as CLI11 wants them
     testing::internal::CaptureStdout();
