@@ -107,6 +107,7 @@ Checked check_plan(const SlicePlan& plan, const Console& console) {
   take(score.last_faults);
   checked.excess = score.voxels.excess();
   checked.totals.mask_px = tally->pixels;
+  checked.totals.rules = tally->rules;
   checked.totals.target_vx = score.voxels.solid;
   return checked;
 }
@@ -143,9 +144,14 @@ Verdict verdict_on(const Checked& checked, bool doubtful_size) {
 }
 
 void check(const SliceOptions& options, const Console& console) {
-  const SlicePlan plan = plan_slices(options, console);
+  SlicePlan plan = plan_slices(options, console);
   const JobHeader& header = plan.header;
   Checked checked = check_plan(plan, console);
+  const std::string changed = rule_warning(checked.totals.rules, header.profile.mask);
+  if (!changed.empty()) {
+    console.warning(changed);
+    plan.warnings.push_back(changed);
+  }
   const std::string verdict = word(verdict_on(checked, plan.doubtful_size));
   const std::array<double, 3> origin_mm = {header.box.bed_px[0] * header.grid.pitch_mm[0],
                                            header.box.bed_px[1] * header.grid.pitch_mm[1], 0};
