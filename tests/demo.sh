@@ -18,6 +18,6 @@ build/binderjet print "$out/ball.bjob" --to "spool:$out/spool"
 set +x
 
 echo
-echo "The masks that would be sent:     $out/masks/mask_000084.png and its neighbours"
+echo "The masks that would be sent:     $out/masks/mask_000084.png and its neighbors"
 echo "What the printer makes of them:   $out/printed/printed_000084.png"
 echo "The job as a printer would get it: $out/spool/done"

@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: GPL-3.0-or-later
-# The tests once more with the address and the undefined-behaviour sanitizer (`address`), with the
+# The tests once more with the address and the undefined-behavior sanitizer (`address`), with the
 # thread sanitizer (`thread`), or, without a word, with both. Builds into build-address/ and
 # build-thread/.
 set -euo pipefail

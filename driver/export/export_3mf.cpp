@@ -82,7 +82,7 @@ std::string image_text(const MaskSource& job, const Image& image, int function,
                     function, image.id, scaling);
 }
 
-// The box of the job, in millimetres from its corner: where the level set is looked at.
+// The box of the job, in millimeters from its corner: where the level set is looked at.
 std::string box_text(const std::array<double, 3>& size_mm) {
   std::string text =
       fmt::format("  <object id=\"{}\" type=\"model\" name=\"box\">\n   <mesh>\n", kBox);

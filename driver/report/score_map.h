@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The score as pictures and a list: a coloured slice stack, and features.json beside its images.
+// The score as pictures and a list: a colored slice stack, and features.json beside its images.
 #pragma once
 
 #include <string>
@@ -13,9 +13,9 @@
 
 namespace binderjet {
 
-// One image per layer, at the voxel grid: white powder, grey where print and target agree, red
+// One image per layer, at the voxel grid: white powder, gray where print and target agree, red
 // missing, blue extra, and darker red and blue where a feature is lost or fused. A column of a
-// layer's voxels has the colour of its worst.
+// layer's voxels has the color of its worst.
 class ScoreMap {
  public:
   ScoreMap(const std::string& folder, const MaskSource& job, const Grid& grid);

@@ -50,7 +50,7 @@ struct RowNeighborhood {
     fill_row(over, y, above);
   }
 
-  // The solid bits of word `w` with a face neighbour that is not.
+  // The solid bits of word `w` with a face neighbor that is not.
   std::uint64_t boundary(std::size_t w) const {
     const std::uint64_t bits = here[w];
     if (bits == 0) return 0;

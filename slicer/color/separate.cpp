@@ -42,7 +42,7 @@ RunLayer diffuse(std::span<const std::byte> rgb, int width, int height, int chan
       drops[i] = false;
       is_ink[i] = ink > 0;
       if (ink <= 0) continue;
-      // Without a neighbour above nothing has told yet where the last drop was: chance says, with
+      // Without a neighbor above nothing has told yet where the last drop was: chance says, with
       // the tone as its odds.
       const bool first = !was_ink[i];
       const float wanted = first ? ink + 127.5F * noise(x, y, salt + 1) : ink + errors[i];

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The colored shell of a mask: color goes some millimetres deep, because powder is translucent;
+// The colored shell of a mask: color goes some millimeters deep, because powder is translucent;
 // inside is white, and so is all that is neither mask nor skin.
 #pragma once
 
@@ -13,7 +13,7 @@ namespace binderjet {
 
 class Shell {
  public:
-  // `depth_mm` is measured from the surface to a pixel's centre.
+  // `depth_mm` is measured from the surface to a pixel's center.
   Shell(const Grid& grid, const JobBox& box, double depth_mm,
         std::shared_ptr<const ColorField> field);
 
@@ -24,7 +24,7 @@ class Shell {
   // reach() layers on each side. A pixel of the skin has its color whether or not the mask has it.
   // A pixel of the mask takes the color of the nearest pixel of the skin if that is within the
   // depth. A pixel on the mask's boundary always has a color: what enhancement made boundary takes
-  // that of its neighbours, and where there are none the surface's own. Pure; takes as much memory
+  // that of its neighbors, and where there are none the surface's own. Pure; takes as much memory
   // as the bitmap.
   std::vector<std::byte> paint(int layer, const Window<SkinLayer>& window) const;
 

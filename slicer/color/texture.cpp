@@ -153,7 +153,7 @@ std::vector<std::optional<Texture>> load_textures(const std::vector<TextureSourc
       texture->tiling = sources[i].tiling;
     } else {
       OIIO::geterror();  // forgets it: the words of the library name no remedy
-      warnings.push_back(fmt::format("its image \"{}\" cannot be decoded; painted in neutral grey",
+      warnings.push_back(fmt::format("its image \"{}\" cannot be decoded; painted in neutral gray",
                                      sources[i].name));
     }
     textures.push_back(std::move(texture));

@@ -67,7 +67,7 @@ Mesh unit_ball(int rounds) {
       }
     }
   }
-  // The faces are the triples of corners that are neighbours of each other.
+  // The faces are the triples of corners that are neighbors of each other.
   const auto neighbors = [&](int a, int b) {
     return dot(mesh.points[static_cast<std::size_t>(a)], mesh.points[static_cast<std::size_t>(b)]) >
            0.4;
@@ -95,7 +95,7 @@ Mesh golf_ball() {
   constexpr double kDimpleAngle = 0.095;
   constexpr double kDimpleDepth = 0.25;
   constexpr int kRounds = 7;
-  // Centres on a golden spiral lie about as far apart as so many can.
+  // Centers on a golden spiral lie about as far apart as so many can.
   const double turn = 2 * std::numbers::pi * (2 - std::numbers::phi);
   std::vector<Point> centers;
   for (int i = 0; i < kDimples; ++i) {
@@ -105,7 +105,7 @@ Mesh golf_ball() {
   }
   Mesh mesh = unit_ball(kRounds);
   for (Point& point : mesh.points) {
-    // The centres are sorted by z, falling; only those within a dimple's height matter.
+    // The centers are sorted by z, falling; only those within a dimple's height matter.
     const auto first =
         std::lower_bound(centers.begin(), centers.end(), point[2] + kDimpleAngle,
                          [](const Point& center, double z) { return center[2] > z; });

@@ -9,7 +9,7 @@
 
 namespace binderjet {
 
-// Millimetres; `low` is below `high` on every axis.
+// Millimeters; `low` is below `high` on every axis.
 void add_box(Mesh& mesh, const Point& low, const Point& high);
 
 // A box between two corners, with x and y exchanged where `along_y`.

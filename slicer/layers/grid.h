@@ -14,7 +14,7 @@ struct Grid {
   std::array<int, 3> detail_vx{2, 2, 2};
 
   double voxel_mm(int axis) const { return pitch_mm[axis] / detail_vx[axis]; }
-  // Where voxel `index` has its centre.
+  // Where voxel `index` has its center.
   double center_mm(int axis, int index) const { return (index + 0.5) * voxel_mm(axis); }
 };
 

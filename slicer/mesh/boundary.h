@@ -3,7 +3,7 @@
 //
 // The winding number of a surface is the same along every path exactly when this boundary is
 // empty, whatever else is odd about the surface: it may cross itself, touch itself along edges, or
-// consist of many shells. So this, and not manifoldness, is what a printable surface must fulfil.
+// consist of many shells. So this, and not manifoldness, is what a printable surface must fulfill.
 #pragma once
 
 #include <array>

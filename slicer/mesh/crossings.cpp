@@ -29,7 +29,7 @@ std::int64_t count_crossings(const Mesh& mesh) {
   std::vector<SweepBox> boxes;
   boxes.reserve(mesh.triangles.size());
   for (int t = 0; t < static_cast<int>(mesh.triangles.size()); ++t) {
-    // Triangles without area lie on their neighbours by nature.
+    // Triangles without area lie on their neighbors by nature.
     if (!shape(t).is_degenerate()) boxes.emplace_back(shape(t).bbox(), t);
   }
   std::int64_t count = 0;

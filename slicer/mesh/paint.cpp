@@ -11,7 +11,7 @@ namespace {
 
 constexpr std::array<Rgb, 3> kWhiteCorners = {kWhite, kWhite, kWhite};
 
-// The colour of each point if all corners there agree.
+// The color of each point if all corners there agree.
 std::optional<std::vector<Rgb>> colors_of_points(const Mesh& mesh,
                                                  const std::vector<std::array<Rgb, 3>>& corners,
                                                  std::vector<bool>& known) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The colour of a model's surface as its file gives it: coloured points, or painted triangles.
+// The color of a model's surface as its file gives it: colored points, or painted triangles.
 #pragma once
 
 #include <array>
@@ -33,8 +33,8 @@ struct TextureSource {
   std::array<Tiling, 2> tiling{};
 };
 
-// Either `samples`: the surface's colour is known at points, as at the vertices of a scan. Or
-// `triangles`: each has a colour per corner and perhaps an image. Both empty: no colour.
+// Either `samples`: the surface's color is known at points, as at the vertices of a scan. Or
+// `triangles`: each has a color per corner and perhaps an image. Both empty: no color.
 struct Paint {
   std::vector<Point> samples;
   std::vector<Rgb> sample_colors;
@@ -54,13 +54,13 @@ struct Paint {
 // What a reader collects while triangles come in: paint for each, in their order.
 class Painter {
  public:
-  // Paint of the next `count` triangles that share a colour and have no image.
+  // Paint of the next `count` triangles that share a color and have no image.
   void add_plain(std::size_t count, const std::optional<Rgb>& color);
   void add_corners(const std::array<Rgb, 3>& corners);
   void add_textured(int image, const std::array<Uv, 3>& uvs, const std::array<Rgb, 3>& corners);
 
   std::vector<TextureSource>& textures() { return paint_.textures; }
-  // A coloured vertex of a surface whose vertices carry the colour.
+  // A colored vertex of a surface whose vertices carry the color.
   void add_sample(const Point& point, const Rgb& color) {
     paint_.samples.push_back(point);
     paint_.sample_colors.push_back(color);
@@ -68,7 +68,7 @@ class Painter {
   bool has_samples() const { return !paint_.samples.empty(); }
 
   // The paint of `mesh`, whose triangles are those that were added. Samples win over triangles.
-  // Without any colour it is empty. With `by_vertex`, corner colours that vary inside triangles
+  // Without any color it is empty. With `by_vertex`, corner colors that vary inside triangles
   // and agree at every point become samples.
   Paint take(const Mesh& mesh, bool by_vertex = false);
 

@@ -113,7 +113,7 @@ class Layout {
       hint += ", and so would a turn by 90 degrees about y";
     }
     if (!part.unit_declared && scale < 1.0 / 3) {
-      hint += fmt::format("; if the file is in micrometres, say --units um ({})",
+      hint += fmt::format("; if the file is in micrometers, say --units um ({})",
                           size_text({size[0] / 1000, size[1] / 1000, size[2] / 1000}));
     }
     throw Error(
@@ -150,13 +150,13 @@ class Layout {
 
   BedSpot middle(const BedRequest& part) const {
     const Rectangle place = rectangle(part);
-    const auto centre = [&](int axis, int pixels) {
+    const auto center = [&](int axis, int pixels) {
       const auto a = static_cast<std::size_t>(axis);
       const double corner = (bed_.size_mm[a] - part.size_mm[a]) / 2;
       const int nearest = static_cast<int>(std::lround(corner / bed_.pitch_mm[a]));
       return std::clamp(nearest, 0, bed_.pixels(axis) - pixels);
     };
-    return {centre(0, place.width), centre(1, place.depth)};
+    return {center(0, place.width), center(1, place.depth)};
   }
 
   // Rows of falling depth: the first part of a row is its deepest.
@@ -185,7 +185,7 @@ class Layout {
       row_depth = std::max(row_depth, place.depth);
       x = place.x + place.width + gap_x_;
     }
-    if (!any_fixed) centre_all(loose, spots);
+    if (!any_fixed) center_all(loose, spots);
   }
 
   // Moves right along its row past what stands there; false if the row has no room left.
@@ -213,7 +213,7 @@ class Layout {
                             bed_.size_mm[0] * bed_.size_mm[1]));
   }
 
-  void centre_all(const std::vector<std::size_t>& loose, std::vector<BedSpot>& spots) const {
+  void center_all(const std::vector<std::size_t>& loose, std::vector<BedSpot>& spots) const {
     int right = 0;
     int back = 0;
     for (const Rectangle& place : taken_) {
@@ -309,9 +309,9 @@ std::string doubtful_size(const BedRequest& part) {
   const Point& size = part.size_mm;
   const double largest = std::max({size[0], size[1], size[2]});
   if (part.unit_declared || largest >= 1) return "";
-  // What is a part of some centimetres in metres was drawn in metres; else inches make more sense.
+  // What is a part of some centimeters in meters was drawn in meters; else inches make more sense.
   constexpr double kLargePartMm = 250;
-  const bool metres = largest * 1000 <= kLargePartMm;
+  const bool meters = largest * 1000 <= kLargePartMm;
   const auto advice = [&](const char* word, double unit_mm) {
     return fmt::format("--units {} ({})", word,
                        size_text({size[0] * unit_mm, size[1] * unit_mm, size[2] * unit_mm}));
@@ -319,8 +319,8 @@ std::string doubtful_size(const BedRequest& part) {
   const std::string m = advice("m", 1000);
   const std::string in = advice("in", 25.4);
   return fmt::format("the whole part is only {}; its file is probably in {}: say {}, or {}",
-                     size_text(size), metres ? "metres" : "inches", metres ? m : in,
-                     metres ? in : m);
+                     size_text(size), meters ? "meters" : "inches", meters ? m : in,
+                     meters ? in : m);
 }
 
 }  // namespace binderjet

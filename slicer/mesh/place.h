@@ -43,7 +43,7 @@ struct BedRequest {
   double scale = 1.0;  // the --scale that led to this size, for advice
 };
 
-// um, mm, cm, m, in, ft as millimetres; none for another word.
+// um, mm, cm, m, in, ft as millimeters; none for another word.
 std::optional<double> unit_from_word(const std::string& word);
 
 // Every coordinate times `factor`, one multiplication, then rotated about x, y and z. Multiples of
@@ -58,7 +58,7 @@ Point transform_part(Mesh& mesh, const Placement& placement, const std::string& 
 
 // A spot for every part, in the same order. A single part without a wish stands in the middle of
 // the bed; several are laid in rows, `spacing_mm` apart and around those that have their spot, and
-// the rows are centred if none has. Throws Error with the numbers if one does not fit, or if two
+// the rows are centered if none has. Throws Error with the numbers if one does not fit, or if two
 // wishes collide.
 std::vector<BedSpot> place_parts(const std::vector<BedRequest>& parts, const Bed& bed,
                                  double spacing_mm);

@@ -219,7 +219,7 @@ class Repairer {
     both(true);
     both(false);
     note(dropped, "dropped", "duplicate face", "duplicate faces");
-    note(turned, "turned", "face against its neighbours", "faces against their neighbours");
+    note(turned, "turned", "face against its neighbors", "faces against their neighbors");
   }
 
   void fill() {

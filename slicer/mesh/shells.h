@@ -20,7 +20,7 @@ Shells shells_by_points(const Mesh& mesh);
 Shells shells_by_edges(const Mesh& mesh);
 
 // Turns triangles until, within each piece that hangs together by edges of two triangles,
-// neighbours agree; the smaller area of a piece turns, so what was right stays. (CGAL's
+// neighbors agree; the smaller area of a piece turns, so what was right stays. (CGAL's
 // orient_polygon_soup follows the piece's first face and doubles points where it cannot.) Returns
 // how many turned.
 int orient_triangles(Mesh& mesh);

@@ -15,7 +15,7 @@
 
 namespace binderjet {
 
-// Writes a binary PLY of quads, layer by layer; memory is two layers. Coordinates are millimetres
+// Writes a binary PLY of quads, layer by layer; memory is two layers. Coordinates are millimeters
 // from the job box's lower corner, as doubles.
 class CuberilleWriter {
  public:

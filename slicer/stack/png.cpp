@@ -74,7 +74,7 @@ Bytes zlib_deflate(Bytes& raw) {
   return out;
 }
 
-enum class Samples { kOneBitGrey, kRgb };
+enum class Samples { kOneBitGray, kRgb };
 
 Bytes encode(std::span<const std::byte> pixels, std::size_t stride, int width, int height,
              Samples samples, std::array<double, 2> pitch_mm) {
@@ -96,7 +96,7 @@ Bytes encode(std::span<const std::byte> pixels, std::size_t stride, int width, i
   for (const double pitch : pitch_mm) {
     put_u32(resolution, static_cast<std::uint32_t>(std::lround(1000 / pitch)));
   }
-  resolution.push_back(std::byte{1});  // pixels per metre
+  resolution.push_back(std::byte{1});  // pixels per meter
   put_chunk(png, "pHYs", resolution);
 
   Bytes rows = filter_up(pixels, stride, height);
@@ -109,7 +109,7 @@ Bytes encode(std::span<const std::byte> pixels, std::size_t stride, int width, i
 
 std::vector<std::byte> encode_png_mask(std::span<const std::byte> bits, int width, int height,
                                        std::array<double, 2> pitch_mm) {
-  return encode(bits, packed_row_bytes(width), width, height, Samples::kOneBitGrey, pitch_mm);
+  return encode(bits, packed_row_bytes(width), width, height, Samples::kOneBitGray, pitch_mm);
 }
 
 std::vector<std::byte> encode_png_rgb(std::span<const std::byte> rgb, int width, int height,

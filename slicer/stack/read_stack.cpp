@@ -92,7 +92,7 @@ std::string StackReader::image_path(int index) const {
   return folder_ + "/" + fmt::sprintf(info_.files, info_.first + index);
 }
 
-std::vector<std::uint8_t> StackReader::read_grey(int index) const {
+std::vector<std::uint8_t> StackReader::read_gray(int index) const {
   const std::string path = image_path(index);
   const auto image = OIIO::ImageInput::open(path);
   if (!image) throw Error(ErrorKind::kBadInput, path, OIIO::geterror());
@@ -102,20 +102,20 @@ std::vector<std::uint8_t> StackReader::read_grey(int index) const {
                 fmt::format("is {} x {} pixels, stack.json says {} x {}", spec.width, spec.height,
                             info_.size[0], info_.size[1]));
   }
-  std::vector<std::uint8_t> grey(static_cast<std::size_t>(spec.width) *
+  std::vector<std::uint8_t> gray(static_cast<std::size_t>(spec.width) *
                                  static_cast<std::size_t>(spec.height));
-  if (!image->read_image(0, 0, 0, 1, OIIO::TypeDesc::UINT8, grey.data())) {
+  if (!image->read_image(0, 0, 0, 1, OIIO::TypeDesc::UINT8, gray.data())) {
     throw Error(ErrorKind::kBadInput, path, image->geterror());
   }
-  return grey;
+  return gray;
 }
 
 RunLayer StackReader::read(int index) const {
-  const std::vector<std::uint8_t> grey = read_grey(index);
+  const std::vector<std::uint8_t> gray = read_gray(index);
   const auto [width, height, count] = info_.size;
   RunLayer layer(width);
   layer.reserve(height, 0);
-  const std::uint8_t* sample = grey.data();
+  const std::uint8_t* sample = gray.data();
   for (int y = 0; y < height; ++y) {
     layer.append_row_where([&](int) { return *sample++ >= info_.threshold; });
   }

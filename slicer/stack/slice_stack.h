@@ -63,7 +63,7 @@ class StackWriter {
   StackInfo info_;
 };
 
-// Reads a stack that anybody wrote: any image format that OpenImageIO reads, 1-bit or grey.
+// Reads a stack that anybody wrote: any image format that OpenImageIO reads, 1-bit or gray.
 class StackReader {
  public:
   // Error{kBadInput} if stack.json is not there, not one of ours or names a missing image.
@@ -72,8 +72,8 @@ class StackReader {
   const StackInfo& info() const { return info_; }
   // Image `index`, solid where 1 (1-bit) or >= threshold; threads may read different ones at once.
   RunLayer read(int index) const;
-  // The same as grey values, row 0 first.
-  std::vector<std::uint8_t> read_grey(int index) const;
+  // The same as gray values, row 0 first.
+  std::vector<std::uint8_t> read_gray(int index) const;
 
  private:
   std::string image_path(int index) const;

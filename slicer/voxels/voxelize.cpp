@@ -31,7 +31,7 @@ Point2 cut(const Point& a, const Point& b, double z) {
   return {low[0] + t * (high[0] - low[0]), low[1] + t * (high[1] - low[1])};
 }
 
-// The voxels of one axis: centres, and the first centre at or above a place.
+// The voxels of one axis: centers, and the first center at or above a place.
 class Axis {
  public:
   Axis(const Grid& grid, int axis, int margin_vx, int size_vx)
@@ -40,7 +40,7 @@ class Axis {
         margin_vx_(margin_vx),
         size_vx_(size_vx) {}
 
-  // In voxels of the job's box. Comparison with the centre itself decides, so rounding in the
+  // In voxels of the job's box. Comparison with the center itself decides, so rounding in the
   // division cannot move a voxel across the surface.
   int first_center_at_or_above(double mm) const {
     int index = static_cast<int>(std::ceil(mm * per_mm_ - 0.5));

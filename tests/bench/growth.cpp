@@ -56,7 +56,7 @@ Mesh wavy_ball(int triangles, std::array<double, 3> size_mm) {
   return mesh;
 }
 
-// Inside voxels with a neighbour outside: a plane has one per voxel of its largest projection.
+// Inside voxels with a neighbor outside: a plane has one per voxel of its largest projection.
 double boundary_voxels(const Mesh& mesh, const std::array<double, 3>& voxel_mm) {
   double count = 0;
   for (const Triangle& triangle : mesh.triangles) {

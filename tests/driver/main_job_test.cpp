@@ -70,10 +70,10 @@ TEST_F(MainJob, GivesTheSameJobWithAnyNumberOfThreads) {
 
 TEST_F(MainJob, GivesTheSameMasksAnywhereOnTheBed) {
   slice("a.bjob");
-  const std::string centre = masks("a.bjob");
+  const std::string center = masks("a.bjob");
   for (const std::string at : {"0.5,0.5", "17.123,201.9", "190,3"}) {
     slice("b.bjob", {"--at", at});
-    EXPECT_EQ(masks("b.bjob"), centre) << at;
+    EXPECT_EQ(masks("b.bjob"), center) << at;
   }
 }
 

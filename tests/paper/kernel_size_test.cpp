@@ -8,7 +8,7 @@
 namespace binderjet {
 namespace {
 
-TEST(PaperKernel, Of700By300MicrometresIsSixteenByTenVoxelsAndAFraction) {
+TEST(PaperKernel, Of700By300MicrometersIsSixteenByTenVoxelsAndAFraction) {
   const Profile profile = load_profile("z450");
   const Grid grid = profile.grid(std::nullopt);
   // Half the printer's grid: 25.4 / 300 / 2 and 25.4 / 450 / 2 mm.

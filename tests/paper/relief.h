@@ -82,12 +82,12 @@ class Relief {
 inline void draw_reliefs(const std::vector<Shared<RunLayer>>& layers, const Grid& grid,
                          const std::string& folder, const std::string& name) {
   const Relief relief(layers, grid);
-  std::vector<Rgb> greys;
+  std::vector<Rgb> grays;
   for (int i = 0; i < 15; ++i) {
-    const auto grey = static_cast<std::uint8_t>(30 + i * 14);
-    greys.push_back({grey, grey, grey});
+    const auto gray = static_cast<std::uint8_t>(30 + i * 14);
+    grays.push_back({gray, gray, gray});
   }
-  greys.push_back({255, 255, 255});
+  grays.push_back({255, 255, 255});
   struct CloseUp {
     const char* part;
     double x_mm, z_mm, width_mm, height_mm;
@@ -105,7 +105,7 @@ inline void draw_reliefs(const std::vector<Shared<RunLayer>>& layers, const Grid
     pictures::write(pictures::folder(folder) + "/" + view.part + "_" + name + ".png",
                     static_cast<int>(view.width_mm / relief.pixel_mm()),
                     static_cast<int>(view.height_mm / relief.pixel_mm()), {view.scale, view.scale},
-                    greys, [&](int x, int z) { return relief.shade(x0 + x, z0 + z); });
+                    grays, [&](int x, int z) { return relief.shade(x0 + x, z0 + z); });
   }
 }
 

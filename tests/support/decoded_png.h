@@ -17,8 +17,8 @@ struct Decoded {
   int height = 0;
   int bit_depth = 0;
   int color_type = 0;
-  png_uint_32 per_metre_x = 0;
-  png_uint_32 per_metre_y = 0;
+  png_uint_32 per_meter_x = 0;
+  png_uint_32 per_meter_y = 0;
   std::vector<std::byte> bits;  // the rows as they lie in the file, without filters
 };
 
@@ -42,8 +42,8 @@ inline Decoded decode(std::span<const std::byte> file) {
   out.height = static_cast<int>(png_get_image_height(png, info));
   out.bit_depth = png_get_bit_depth(png, info);
   out.color_type = png_get_color_type(png, info);
-  out.per_metre_x = png_get_x_pixels_per_meter(png, info);
-  out.per_metre_y = png_get_y_pixels_per_meter(png, info);
+  out.per_meter_x = png_get_x_pixels_per_meter(png, info);
+  out.per_meter_y = png_get_y_pixels_per_meter(png, info);
   const std::size_t stride = png_get_rowbytes(png, info);
   png_bytepp rows = png_get_rows(png, info);
   for (int y = 0; y < out.height; ++y) {

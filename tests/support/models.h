@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Models that the tests make themselves, closed and oriented, in millimetres.
+// Models that the tests make themselves, closed and oriented, in millimeters.
 #pragma once
 
 #include <cmath>

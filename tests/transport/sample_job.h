@@ -64,7 +64,7 @@ inline std::vector<std::byte> sample_payload(RecordKind kind, int layer) {
   return payload;
 }
 
-// Colour is optional: a part without it has masks alone.
+// Color is optional: a part without it has masks alone.
 inline std::vector<std::byte> sample_records(int layer, bool color = true) {
   std::vector<std::byte> records =
       encode_record(RecordKind::kMask, layer, sample_payload(RecordKind::kMask, layer));

@@ -88,7 +88,7 @@ std::function<std::string(const LengthBlock&, std::size_t)> reading_label(
 }
 
 // Less the mean over its batch and axis, so that a column cannot stand in for growth.
-TermForm centred(TermForm form, const Readings& readings) {
+TermForm centered(TermForm form, const Readings& readings) {
   std::map<std::pair<std::string, std::size_t>, std::vector<Eigen::Index>> cells;
   for (std::size_t i = 0; i < readings.block.size(); ++i) {
     cells[{readings.block[i]->batch, readings.axis[i]}].push_back(static_cast<Eigen::Index>(i));
@@ -110,7 +110,7 @@ Term reading_term(const Readings& readings, const std::vector<std::size_t>& axes
       return key.empty() || !per_batch ? key : key + ", batch " + block.batch;
     };
     term.forms.push_back(
-        centred(readings.form(fmt::format("along {}", kAxisNames[a]), per, one), readings));
+        centered(readings.form(fmt::format("along {}", kAxisNames[a]), per, one), readings));
   }
   return term;
 }

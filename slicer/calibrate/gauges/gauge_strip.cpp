@@ -12,7 +12,7 @@ constexpr int kPlaces = 16;
 
 // Pixels along one axis that are solid where the gauge is not (slots) or is (walls), cut as the
 // slicing operator does: a pixel is 1 iff at least half of its voxels are. One pixel with all its
-// like neighbours has the same state, so one axis is enough.
+// like neighbors has the same state, so one axis is enough.
 std::vector<bool> pixels(const Grid& grid, GaugeKind kind, int axis, double low_mm, double high_mm,
                          int count) {
   const int detail = grid.detail_vx[static_cast<std::size_t>(axis)];

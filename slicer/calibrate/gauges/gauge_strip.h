@@ -19,7 +19,7 @@ struct GaugePrint {
   double visible_share = 0;  // of the places at which at least one voxel is open or stands
 };
 
-// Sliced as a part is (voxel centres, then half of a pixel's voxels) and printed by the model, in a
+// Sliced as a part is (voxel centers, then half of a pixel's voxels) and printed by the model, in a
 // block of solid (slots) or powder (walls) that reaches further than the binder does. `axis` is 0
 // to 2, the normal of the gauge.
 GaugePrint print_gauge(const PrinterModel& model, const Grid& grid, GaugeKind kind, int axis,

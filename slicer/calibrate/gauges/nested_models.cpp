@@ -38,7 +38,7 @@ std::vector<Fold> folds_of(std::span<const int> groups) {
   return out;
 }
 
-// By the normal equations: columns are few, and counts, millimetres or 0 and 1, so they are far
+// By the normal equations: columns are few, and counts, millimeters or 0 and 1, so they are far
 // from the limits of a double; the decomposition gives the least norm where they do not suffice.
 VectorXd solve(const MatrixXd& design, const VectorXd& readings) {
   const MatrixXd square = design.transpose() * design;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Gauge tables of slots and walls, in both their forms, as readings in millimetres.
+// Gauge tables of slots and walls, in both their forms, as readings in millimeters.
 #include <fmt/format.h>
 
 #include <algorithm>

@@ -99,7 +99,7 @@ int between_classes(const Counts& counts) {
   return split;
 }
 
-// The median grey among [from, to).
+// The median gray among [from, to).
 double median(const Counts& counts, int from, int to) {
   std::int64_t all = 0;
   for (int g = from; g < to; ++g) all += counts[static_cast<std::size_t>(g)];
@@ -117,31 +117,31 @@ double median(const Counts& counts, int from, int to) {
   return from;
 }
 
-Greys find_greys(const StackReader& scan) {
+Grays find_grays(const StackReader& scan) {
   constexpr int kSlices = 9;
-  Counts greys{};
-  Counts steps{};  // between neighbours along x: noise almost everywhere, edges hardly anywhere
+  Counts grays{};
+  Counts steps{};  // between neighbors along x: noise almost everywhere, edges hardly anywhere
   const auto [width, height, count] = scan.info().size;
   for (int i = 0; i < std::min(kSlices, count); ++i) {
-    const std::vector<std::uint8_t> values = scan.read_grey(
+    const std::vector<std::uint8_t> values = scan.read_gray(
         count <= kSlices ? i : static_cast<int>(std::int64_t{i} * (count - 1) / (kSlices - 1)));
     for (std::size_t at = 0; at < values.size(); ++at) {
-      ++greys[values[at]];
+      ++grays[values[at]];
       if (at % static_cast<std::size_t>(width) != 0) {
         ++steps[static_cast<std::size_t>(std::abs(values[at] - values[at - 1]))];
       }
     }
   }
-  Greys found;
-  const int split = between_classes(greys);
-  found.powder = std::max(0.0, median(greys, 0, split));
-  found.solid = std::min(255.0, median(greys, split, 256));
-  if (found.solid - found.powder < 1) found = {};  // one grey all over: empty or full
+  Grays found;
+  const int split = between_classes(grays);
+  found.powder = std::max(0.0, median(grays, 0, split));
+  found.solid = std::min(255.0, median(grays, split, 256));
+  if (found.solid - found.powder < 1) found = {};  // one gray all over: empty or full
   found.half =
       scan.info().threshold_stated ? scan.info().threshold - 0.5 : (found.powder + found.solid) / 2;
-  // A scan of two greys only has no noise that could be seen.
+  // A scan of two grays only has no noise that could be seen.
   const auto others = [&](int from, int to) {
-    return std::count_if(greys.begin() + from, greys.begin() + to,
+    return std::count_if(grays.begin() + from, grays.begin() + to,
                          [](std::int64_t samples) { return samples > 0; }) > 1;
   };
   if (!others(0, split) && !others(split, 256)) return found;
@@ -151,23 +151,23 @@ Greys find_greys(const StackReader& scan) {
   return found;
 }
 
-GreyPlane read_plane(const StackReader& scan, const Greys& greys, int image) {
+GrayPlane read_plane(const StackReader& scan, const Grays& grays, int image) {
   const StackInfo& info = scan.info();
-  GreyPlane plane;
+  GrayPlane plane;
   plane.width = info.size[0];
   plane.height = info.size[1];
   plane.pitch_mm = {info.pitch_mm[0], info.pitch_mm[1]};
   plane.origin_mm = {info.origin_mm[0], info.origin_mm[1]};
-  const std::vector<std::uint8_t> values = scan.read_grey(image);
+  const std::vector<std::uint8_t> values = scan.read_gray(image);
   plane.values.reserve(values.size());
   for (const std::uint8_t value : values) {
     plane.values.push_back(
-        static_cast<float>(0.5 + (value - greys.half) / (greys.solid - greys.powder)));
+        static_cast<float>(0.5 + (value - grays.half) / (grays.solid - grays.powder)));
   }
   return plane;
 }
 
-RunLayer resampled(const GreyPlane& plane, const Pose& pose, const StackInfo& frame) {
+RunLayer resampled(const GrayPlane& plane, const Pose& pose, const StackInfo& frame) {
   RunLayer layer(frame.size[0]);
   for (int y = 0; y < frame.size[1]; ++y) {
     const double y_mm = frame.origin_mm[1] + (y + 0.5) * frame.pitch_mm[1];
@@ -197,24 +197,24 @@ Measured read_measured(const std::string& folder, const StackInfo& frame,
       measured.layers[static_cast<std::size_t>(k)] = make(k);
     });
   };
-  measured.greys = find_greys(reader);
+  measured.grays = find_grays(reader);
   if (const auto grid = on_grid(reader.info(), frame)) {
     for_layers([&](int k) { return layer_on_grid(reader, *grid, frame, k); });
     return measured;
   }
   const Scan scan{reader.info(), [&](int image) {
                     if (check) check();
-                    return read_plane(reader, measured.greys, image);
+                    return read_plane(reader, measured.grays, image);
                   }};
   measured.registration = register_scan(scan, predicted, frame, folder);
   const Pose& pose = measured.registration->pose;
   // White noise falls by 2 sqrt(pi) deviations of the blur, in samples.
-  const double blur_mm = measured.greys.noise / kMostNoise / (2 * std::sqrt(std::numbers::pi)) *
+  const double blur_mm = measured.grays.noise / kMostNoise / (2 * std::sqrt(std::numbers::pi)) *
                          reader.info().pitch_mm[0];
   for_layers([&](int k) {
     const double low = frame.origin_mm[2] + k * frame.pitch_mm[2] + pose.shift_mm[2];
-    const GreyPlane plane = scan.mean(low, low + frame.pitch_mm[2]);
-    const bool noisy = measured.greys.noise > kMostNoise;
+    const GrayPlane plane = scan.mean(low, low + frame.pitch_mm[2]);
+    const bool noisy = measured.grays.noise > kMostNoise;
     return resampled(noisy ? blurred(plane, blur_mm) : plane, pose, frame);
   });
   return measured;

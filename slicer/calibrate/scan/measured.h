@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // What came out of the powder, on the voxel grid of the job: a scan registered and resampled.
 //
-//   samples of the scan -> half way between the two greys -> pose -> voxel = grey at its middle
+//   samples of the scan -> half way between the two grays -> pose -> voxel = gray at its middle
 #pragma once
 
 #include <functional>
@@ -16,8 +16,8 @@
 
 namespace binderjet {
 
-// The two greys of a scan, from a sample of its slices.
-struct Greys {
+// The two grays of a scan, from a sample of its slices.
+struct Grays {
   double powder = 0;
   double solid = 255;
   double half = 127.5;  // the surface: the stated threshold, or half way between the two
@@ -26,15 +26,15 @@ struct Greys {
 
 struct Measured {
   std::vector<RunLayer> layers;  // one per layer of the job, at its voxel grid in x and y
-  Greys greys;
+  Grays grays;
   // None where the scan's samples are whole voxels of the job's grid: such a stack is taken as it
   // is, bit for bit where the grids are equal.
   std::optional<Registration> registration;
 };
 
 // `frame` describes the printed stack that was predicted for the job (slice_stack.h), and
-// `predicted` are its layers. The scan may have any pitch, also in z, grey or 1-bit samples, noise,
-// and may be shifted and turned; what it does not cover reads as powder. Greys between the centres
+// `predicted` are its layers. The scan may have any pitch, also in z, gray or 1-bit samples, noise,
+// and may be shifted and turned; what it does not cover reads as powder. Grays between the centers
 // of samples are interpolated and the surface is where they pass half, so edges keep their place to
 // a fraction of a sample. Noise beyond a tenth of the contrast is blurred to that first, or it
 // would strew voxels. Error{kBadInput} for a folder that is no such stack. `check`, if it is given,

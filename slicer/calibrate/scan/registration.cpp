@@ -33,7 +33,7 @@ struct EdgePoint {
 struct Pair {
   int layer;
   std::vector<EdgePoint> points;
-  GreyPlane scan;
+  GrayPlane scan;
 };
 
 // Shift x, shift y, turn (radians), scale x, scale y; and how far faces across x and across y grew,
@@ -60,7 +60,7 @@ std::array<int, 2> cell_factor(std::array<double, 2> pitch_mm, double sigma_mm) 
 
 std::array<double, 2> xy(const std::array<double, 3>& v) { return {v[0], v[1]}; }
 
-std::vector<EdgePoint> edge_points(const GreyPlane& plane, double sigma_mm) {
+std::vector<EdgePoint> edge_points(const GrayPlane& plane, double sigma_mm) {
   // A straight edge of the blurred image is this steep in its middle.
   const double steepest = 1 / (sigma_mm * std::sqrt(2 * std::numbers::pi));
   std::vector<EdgePoint> points;
@@ -76,7 +76,7 @@ std::vector<EdgePoint> edge_points(const GreyPlane& plane, double sigma_mm) {
   return points;
 }
 
-GreyPlane blurred_scan(const GreyPlane& slice, double sigma_mm) {
+GrayPlane blurred_scan(const GrayPlane& slice, double sigma_mm) {
   return blurred(coarsened(slice, cell_factor(slice.pitch_mm, sigma_mm)), sigma_mm);
 }
 
@@ -104,7 +104,7 @@ struct Problem {
     for (const int layer : layers()) pairs.push_back({layer, {}, {}});
     oneapi::tbb::parallel_for(std::size_t{0}, pairs.size(), [&](std::size_t i) {
       const auto pitch = xy(frame.pitch_mm);
-      const GreyPlane cells = coverage(predicted[static_cast<std::size_t>(pairs[i].layer)], pitch,
+      const GrayPlane cells = coverage(predicted[static_cast<std::size_t>(pairs[i].layer)], pitch,
                                        xy(frame.origin_mm), cell_factor(pitch, sigma_mm));
       pairs[i].points = edge_points(blurred(cells, sigma_mm), sigma_mm);
     });
@@ -132,7 +132,7 @@ double weight(double difference, double cutoff) {
 }
 
 // Scan - prediction where the point comes to lie.
-double difference(const EdgePoint& p, const GreyPlane& scan, const Parameters& at,
+double difference(const EdgePoint& p, const GrayPlane& scan, const Parameters& at,
                   std::array<double, 2> center) {
   const double x = (1 + at[3]) * (p.x - center[0]);
   const double y = (1 + at[4]) * (p.y - center[1]);
@@ -202,11 +202,11 @@ Fit gauss_newton(const std::vector<Pair>& pairs, Parameters at, std::array<doubl
   return {at, std::sqrt(mean_square(pairs, at, center))};
 }
 
-// Volume (in layers and samples) and its centre, for a start.
+// Volume (in layers and samples) and its center, for a start.
 struct Centroid {
   double volume = 0;
   std::array<double, 3> sum{};
-  void add(const GreyPlane& plane, double z_mm, double share) {
+  void add(const GrayPlane& plane, double z_mm, double share) {
     for (int y = 0; y < plane.height; ++y) {
       for (int x = 0; x < plane.width; ++x) {
         // Noise of the powder around must not pull.
@@ -233,7 +233,7 @@ std::array<double, 3> centroid_shift(const Problem& problem, const std::string& 
   Centroid found;
   const StackInfo& info = problem.scan.info;
   for (int k = 0; k < info.size[2]; ++k) {
-    const GreyPlane slice = problem.scan.slice(k);
+    const GrayPlane slice = problem.scan.slice(k);
     found.add(coarsened(slice, cell_factor(slice.pitch_mm, kCoarseMm)),
               info.origin_mm[2] + (k + 0.5) * info.pitch_mm[2], 1);
   }
@@ -248,7 +248,7 @@ std::array<double, 3> centroid_shift(const Problem& problem, const std::string& 
 // The least misfit by ever smaller steps on both sides.
 double find_shift_z(const Problem& problem, const Parameters& at, double start) {
   constexpr double kSigmaMm = 0.3;
-  std::vector<GreyPlane> slices(static_cast<std::size_t>(problem.scan.info.size[2]));
+  std::vector<GrayPlane> slices(static_cast<std::size_t>(problem.scan.info.size[2]));
   oneapi::tbb::parallel_for(0, problem.scan.info.size[2], [&](int k) {
     slices[static_cast<std::size_t>(k)] = blurred_scan(problem.scan.slice(k), kSigmaMm);
   });

@@ -22,16 +22,16 @@ bool Scan::has_layers_of(const StackInfo& frame) const {
          std::abs(info.origin_mm[2] - frame.origin_mm[2]) < slack;
 }
 
-GreyPlane Scan::mean(double low_mm, double high_mm) const {
+GrayPlane Scan::mean(double low_mm, double high_mm) const {
   const double pitch = info.pitch_mm[2];
   // Rounding must not pull in a sliver of the next slice.
   const double low = (low_mm - info.origin_mm[2]) / pitch + 1e-6;
   const double high = (high_mm - info.origin_mm[2]) / pitch - 1e-6;
-  GreyPlane sum;
+  GrayPlane sum;
   for (int k = static_cast<int>(std::floor(low)); k < high; ++k) {
     if (k < 0 || k >= info.size[2]) continue;
     const double share = (std::min(high, k + 1.0) - std::max(low, double(k))) / (high - low);
-    GreyPlane plane = slice(k);
+    GrayPlane plane = slice(k);
     if (sum.values.empty()) {
       sum = plane;
       std::fill(sum.values.begin(), sum.values.end(), 0.0F);

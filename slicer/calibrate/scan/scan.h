@@ -5,7 +5,7 @@
 #include <array>
 #include <functional>
 
-#include "slicer/calibrate/scan/grey_image.h"
+#include "slicer/calibrate/scan/gray_image.h"
 #include "slicer/stack/slice_stack.h"
 
 namespace binderjet {
@@ -23,12 +23,12 @@ struct Pose {
 // different slices at once.
 struct Scan {
   StackInfo info;
-  std::function<GreyPlane(int)> slice;
+  std::function<GrayPlane(int)> slice;
 
   // Whether the scan's slices are the frame's layers, one for one.
   bool has_layers_of(const StackInfo& frame) const;
   // The mean over the heights [low, high) mm; powder outside the scan.
-  GreyPlane mean(double low_mm, double high_mm) const;
+  GrayPlane mean(double low_mm, double high_mm) const;
 };
 
 }  // namespace binderjet

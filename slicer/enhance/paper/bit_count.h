@@ -17,7 +17,7 @@ namespace binderjet::bits {
 template <std::size_t Planes>
 using Number = std::array<std::uint64_t, Planes>;
 
-// A bit and its two neighbours in the word: 0 to 3. Beyond the word's ends is 0.
+// A bit and its two neighbors in the word: 0 to 3. Beyond the word's ends is 0.
 inline Number<2> add_neighbors(std::uint64_t word) {
   const std::uint64_t left = word << 1;
   const std::uint64_t right = word >> 1;

@@ -17,8 +17,8 @@ struct PassLayer {
 };
 
 // The next V of the middle one of three layers, simultaneous over all voxels: for each voxel of V
-// with a face neighbour of the other state, s = sum of (printed - target) over the 3 x 3 x 3
-// around it; s > 0 gives 0, s < 0 gives 1, s = 0 keeps it. Null neighbours are powder.
+// with a face neighbor of the other state, s = sum of (printed - target) over the 3 x 3 x 3
+// around it; s > 0 gives 0, s < 0 gives 1, s = 0 keeps it. Null neighbors are powder.
 VoxelLayer paper_rule(const PassLayer* below, const PassLayer& layer, const PassLayer* above);
 
 }  // namespace binderjet

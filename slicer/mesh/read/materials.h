@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Wavefront MTL: the diffuse colour and image of each named material.
+// Wavefront MTL: the diffuse color and image of each named material.
 #pragma once
 
 #include <map>

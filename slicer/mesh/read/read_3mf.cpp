@@ -86,7 +86,7 @@ class Reader3mf {
   MeshFile read() {
     DWORD unit = 0;
     demand(NMR::lib3mf_model_getunit(model_.get(), &unit), model_.get());
-    // microns, millimetres, centimetres, inches, feet, metres: lib3mf's order
+    // microns, millimeters, centimeters, inches, feet, meters: lib3mf's order
     constexpr std::array<double, 6> kUnits = {0.001, 1.0, 10.0, 25.4, 304.8, 1000.0};
     constexpr std::array<const char*, 6> kNames = {"micron", "millimeter", "centimeter",
                                                    "inch",   "foot",       "meter"};
@@ -289,7 +289,7 @@ class Reader3mf {
     ULONG64 size = 0;
     if (!attached || NMR::lib3mf_attachment_getstreamsize(attachment, &size) != LIB3MF_OK ||
         size == 0 || size > (ULONG64{1} << 30)) {
-      result_.warnings.push_back("one of its images is missing; painted in neutral grey");
+      result_.warnings.push_back("one of its images is missing; painted in neutral gray");
       return -1;
     }
     TextureSource source{fmt::format("image {}", id), "", {}, {}};

@@ -95,7 +95,7 @@ class SceneReader {
       aiVector3t<double> point(mesh.mVertices[i].x, mesh.mVertices[i].y, mesh.mVertices[i].z);
       if (!matrix.IsIdentity()) point = matrix * point;
       out.points.push_back({point.x, point.y, point.z});
-      // Without images the vertices carry all the colour there is.
+      // Without images the vertices carry all the color there is.
       if (!textured_ && mesh.mColors[0] != nullptr) {
         painter_.add_sample(out.points.back(), color_at(mesh, i));
       }
@@ -135,7 +135,7 @@ class SceneReader {
     const bool named = material.Get(AI_MATKEY_NAME, text) == aiReturn_SUCCESS;
     const std::string name = named ? text.C_Str() : "";
     aiColor4D color;
-    // Materials that assimp makes up for files without any have a colour nobody chose.
+    // Materials that assimp makes up for files without any have a color nobody chose.
     if (name != "DefaultMaterial" &&
         (material.Get(AI_MATKEY_BASE_COLOR, color) == aiReturn_SUCCESS ||
          material.Get(AI_MATKEY_COLOR_DIFFUSE, color) == aiReturn_SUCCESS)) {
@@ -176,7 +176,7 @@ class SceneReader {
 
   int missing(const std::string& file) {
     result_.warnings.push_back(
-        fmt::format("its image \"{}\" is not in its folder; painted in neutral grey", file));
+        fmt::format("its image \"{}\" is not in its folder; painted in neutral gray", file));
     return -1;
   }
 
@@ -190,7 +190,7 @@ class SceneReader {
            mesh.mTextureCoords[look.uv_channel] != nullptr;
   }
 
-  // The vertex's own colour times the material's, as glTF has it.
+  // The vertex's own color times the material's, as glTF has it.
   Rgb color_at(const aiMesh& mesh, unsigned vertex) const {
     const Rgb base = look_of(mesh).color.value_or(kWhite);
     if (mesh.mColors[0] == nullptr) return base;
@@ -268,7 +268,7 @@ MeshFile read_with_assimp(const std::string& path, const std::string& name) {
   MeshFile result = SceneReader(*scene, path, name).read();
   if (dot == ".gltf" || dot == ".glb") {
     result.warnings.push_back(
-        "glTF is in metres and y-up by its specification, but is read as it is: one unit is 1 mm "
+        "glTF is in meters and y-up by its specification, but is read as it is: one unit is 1 mm "
         "and z is up; use --units m and --rotate 90,0,0 if the part comes out small or lying");
   }
   return result;

@@ -12,13 +12,13 @@ namespace binderjet {
 
 struct MeshFile {
   Mesh mesh;                          // coordinates as in the file; every index valid, all finite
-  double unit_mm = 1.0;               // what one unit of the file is in millimetres
+  double unit_mm = 1.0;               // what one unit of the file is in millimeters
   bool unit_declared = false;         // false: the format carries no unit, 1 mm is a guess
-  Paint paint;                        // its colour, in the same coordinates; empty without
+  Paint paint;                        // its color, in the same coordinates; empty without
   std::vector<std::string> warnings;  // what was odd but did not stop the reading
 };
 
-// The largest coordinate, in millimetres, that is taken for a real part: a thousand kilometres.
+// The largest coordinate, in millimeters, that is taken for a real part: a thousand kilometers.
 inline constexpr double kMaxCoordinateMm = 1e9;
 
 // STL (binary and text), PLY, OBJ, OFF, 3MF, VRML, glTF/GLB and what assimp knows besides; the

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Wavefront OBJ: the points and faces of all groups, with the colours of points, materials and
+// Wavefront OBJ: the points and faces of all groups, with the colors of points, materials and
 // images.
 #include <fmt/format.h>
 
@@ -48,7 +48,7 @@ class ObjReader {
       refuse_index(highest_where_, highest_);
     }
     if (odd_colors_ > 0) {
-      result_.warnings.push_back(counted(odd_colors_, "point has a colour", "points have colours") +
+      result_.warnings.push_back(counted(odd_colors_, "point has a color", "points have colors") +
                                  " that is no number; ignored");
     }
     finish_colors();
@@ -74,9 +74,9 @@ class ObjReader {
     for (std::string_view word = words.next(); !word.empty(); word = words.next()) {
       found = file_beside(path_, std::string(word));
       if (found.empty()) {
-        result_.warnings.push_back(fmt::format(
-            "its materials \"{}\" are not in its folder; put them there for its colours",
-            word.substr(0, 100)));
+        result_.warnings.push_back(
+            fmt::format("its materials \"{}\" are not in its folder; put them there for its colors",
+                        word.substr(0, 100)));
       } else {
         read_materials(found, materials_);
       }
@@ -96,14 +96,14 @@ class ObjReader {
       const std::string found = file_beside(path_, wanted);
       if (found.empty()) {
         result_.warnings.push_back(
-            fmt::format("its image \"{}\" is not in its folder; painted in neutral grey", wanted));
+            fmt::format("its image \"{}\" is not in its folder; painted in neutral gray", wanted));
       } else {
         known->second = static_cast<int>(painter_.textures().size());
         painter_.textures().push_back({wanted, found, {}, {}});
       }
     }
     image_ = known->second;
-    // The image is the colour; Kd beside it is left as a default by most programs.
+    // The image is the color; Kd beside it is left as a default by most programs.
     color_ = image_ >= 0 ? kWhite : kNeutral;
   }
 
@@ -178,7 +178,7 @@ class ObjReader {
             fmt::format("\"{}\" is no finite number; export the model again", word.substr(0, 40)));
       }
     }
-    // A fourth number is a weight, a fourth to sixth are a colour: neither moves the point.
+    // A fourth number is a weight, a fourth to sixth are a color: neither moves the point.
     bool odd = false;
     FloatRgb color{};
     std::size_t numbers = 0;

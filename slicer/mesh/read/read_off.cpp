@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// OFF as text, with or without colours and normals: a header, points, faces.
+// OFF as text, with or without colors and normals: a header, points, faces.
 #include <fmt/format.h>
 
 #include <array>
@@ -65,8 +65,8 @@ class OffWords {
   Words words_{{}};
 };
 
-// Three or four numbers are a colour: 0 to 1 if written with a point, else 0 to 255. One number is
-// a place in a colour map that nobody has.
+// Three or four numbers are a color: 0 to 1 if written with a point, else 0 to 255. One number is
+// a place in a color map that nobody has.
 std::optional<Rgb> color_in(std::string_view text, std::size_t skip = 0) {
   text = text.substr(0, text.find('#'));
   Words words(text);
@@ -119,7 +119,7 @@ MeshFile read_off(InputFile& file) {
     if (keyword == "OFF") continue;
     const std::string_view rest = words.rest_of_line();
     if (keyword != "COFF" && keyword != "CNOFF") continue;
-    // Three numbers of a normal stand before the colour.
+    // Three numbers of a normal stand before the color.
     if (const auto color = color_in(rest, keyword == "CNOFF" ? 3 : 0)) {
       painter.add_sample({x, y, z}, *color);
     }

@@ -128,7 +128,7 @@ class PlyReader {
     const std::string found = file_beside(path_, std::string(name));
     if (found.empty()) {
       result_.warnings.push_back(
-          fmt::format("its image \"{}\" is not in its folder; painted in neutral grey", name));
+          fmt::format("its image \"{}\" is not in its folder; painted in neutral gray", name));
       image_of_.push_back(-1);
       return;
     }
@@ -145,7 +145,7 @@ class PlyReader {
     return -1;
   }
 
-  // A colour's number as 0 to 1: whole numbers count up to the type's largest.
+  // A color's number as 0 to 1: whole numbers count up to the type's largest.
   static double share(Type type, double number) {
     switch (type) {
       case Type::kInt8:

@@ -34,9 +34,9 @@ std::int64_t declared_facets(InputFile& file) {
               "has a coordinate that is no finite number; export the model again");
 }
 
-// The colour in a facet's two attribute bytes, in the two dialects there are. Magics: the header
-// says COLOR= and the part's colour, bit 15 clear is a colour of the facet's own, red lowest.
-// VisCAM and SolidView: bit 15 set is a colour, blue lowest.
+// The color in a facet's two attribute bytes, in the two dialects there are. Magics: the header
+// says COLOR= and the part's color, bit 15 clear is a color of the facet's own, red lowest.
+// VisCAM and SolidView: bit 15 set is a color, blue lowest.
 class FacetColors {
  public:
   explicit FacetColors(std::string_view header) {
@@ -65,7 +65,7 @@ class FacetColors {
 };
 
 // Facets as a header of the Magics dialect declares them, all attribute bytes 0, are of the part's
-// colour: a writer that knows facet colours would not make the whole part black.
+// color: a writer that knows facet colors would not make the whole part black.
 void paint_facets(const FacetColors& colors, const std::vector<std::uint16_t>& bits,
                   Painter& painter) {
   const bool all_zero = std::all_of(bits.begin(), bits.end(), [](auto b) { return b == 0; });

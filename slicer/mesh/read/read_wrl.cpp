@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // VRML 1 and 2 through Coin: the triangles of the scene where its transforms put them, with the
-// colour of each corner.
+// color of each corner.
 #include <Inventor/SoDB.h>
 #include <Inventor/SoInput.h>
 #include <Inventor/SoPrimitiveVertex.h>
@@ -237,7 +237,7 @@ class SceneReader {
       }
       if (known->second < 0) {
         result_.warnings.push_back(fmt::format(
-            "its image \"{}\" is not in its folder; painted in neutral grey", names.front()));
+            "its image \"{}\" is not in its folder; painted in neutral gray", names.front()));
       }
     }
     image_ = known->second;

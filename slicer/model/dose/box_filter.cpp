@@ -218,7 +218,7 @@ BoxWeights box_weights(double width_vx) {
   weights.full = kFull;
   weights.end = kFull;
   if (width_vx <= 1) return weights;
-  const double half = width_vx / 2 - 0.5;  // beyond the centre voxel, on each side
+  const double half = width_vx / 2 - 0.5;  // beyond the center voxel, on each side
   const int whole = static_cast<int>(half);
   const std::int64_t fraction = std::llround((half - whole) * static_cast<double>(kFull));
   weights.reach = whole;

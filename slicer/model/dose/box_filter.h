@@ -39,7 +39,7 @@ struct BoxWeights {
 // Weights in units of 2^-16 voxels; the fraction at the ends is rounded to them.
 BoxWeights box_weights(double width_vx);
 
-// A voxel of the result is 1 iff the weighted sum over its neighbourhood, x.at(dx) * y.at(dy) for
+// A voxel of the result is 1 iff the weighted sum over its neighborhood, x.at(dx) * y.at(dy) for
 // each voxel that is 1, is at least `least` (> 0). Every pixel of the input is repeat[0] x
 // repeat[1] voxels of the result. Outside is powder.
 RunLayer box_threshold(const RunLayer& in, std::array<int, 2> repeat, const BoxWeights& x,

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Dose and threshold on runs for any sum of separable kernels on a layer and its neighbours.
+// Dose and threshold on runs for any sum of separable kernels on a layer and its neighbors.
 //
 //   D(v) = sum over terms t of g_t * sum over (i, j) of X_t(i) Y_t(j) * mask_(k + l_t)(v - (i, j))
 //

@@ -35,7 +35,7 @@ struct Kernel {
 
 Kernel box_kernel(const BoxWeights& box);
 
-// A centred normal distribution of this full width at half maximum (> 0), each weight the integral
+// A centered normal distribution of this full width at half maximum (> 0), each weight the integral
 // over its voxel. The tails are cut where 2^-12 of the binder lies beyond on both sides together,
 // a dose far below any that binds powder.
 Kernel gaussian_kernel(double width_vx);

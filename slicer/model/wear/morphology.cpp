@@ -27,16 +27,16 @@ void grown(rows::Row row, int by, int width, std::vector<int>& out) {
   }
 }
 
-// A row that the ellipsoid reaches from its centre, and how far it goes there to either side.
-struct Neighbour {
+// A row that the ellipsoid reaches from its center, and how far it goes there to either side.
+struct Neighbor {
   int dy;
   int dz;
   int half;
 };
 
-std::vector<Neighbour> neighbours(const Ellipsoid& by) {
+std::vector<Neighbor> neighbors(const Ellipsoid& by) {
   const auto [rx, ry, rz] = by.reach();
-  std::vector<Neighbour> out;
+  std::vector<Neighbor> out;
   for (int dz = -rz; dz <= rz; ++dz) {
     for (int dy = -ry; dy <= ry; ++dy) {
       const int half = by.half_width(dy, dz);
@@ -49,8 +49,8 @@ std::vector<Neighbour> neighbours(const Ellipsoid& by) {
 // The middle layer, each of whose rows takes in every row that the ellipsoid reaches from it:
 // `take`(row so far, layer or null where there is none, y, half width of the ellipsoid there).
 template <class Take>
-RunLayer over_neighbours(const RunWindow& window, const Ellipsoid& by, const Take& take) {
-  const std::vector<Neighbour> reached = neighbours(by);
+RunLayer over_neighbors(const RunWindow& window, const Ellipsoid& by, const Take& take) {
+  const std::vector<Neighbor> reached = neighbors(by);
   const RunLayer& middle = window.middle();
   RunLayer out(middle.width());
   std::vector<int> runs;
@@ -68,7 +68,7 @@ Ellipsoid::Ellipsoid(double radius_mm, const Grid& grid)
     : radius_{radius_mm / grid.voxel_mm(0), radius_mm / grid.voxel_mm(1),
               radius_mm / grid.pitch_mm[2]} {
   for (std::size_t axis = 0; axis < 3; ++axis) {
-    // A radius of whole voxels in decimal millimetres is that many but for rounding.
+    // A radius of whole voxels in decimal millimeters is that many but for rounding.
     constexpr double kRounding = 1e-9;
     reach_[axis] = static_cast<int>(std::floor(radius_[axis] + kRounding));
   }
@@ -93,27 +93,26 @@ int Ellipsoid::half_width(int dy, int dz) const {
 RunLayer dilated(const RunWindow& window, const Ellipsoid& by) {
   std::vector<int> row;
   std::vector<int> next;
-  return over_neighbours(window, by,
-                         [&](std::vector<int>& runs, const RunLayer* layer, int y, int half) {
-                           if (layer == nullptr || layer->row(y).empty()) return;
-                           grown(layer->row(y), half, layer->width(), row);
-                           rows::unite(runs, row, next);
-                           std::swap(runs, next);
-                         });
+  return over_neighbors(window, by,
+                        [&](std::vector<int>& runs, const RunLayer* layer, int y, int half) {
+                          if (layer == nullptr || layer->row(y).empty()) return;
+                          grown(layer->row(y), half, layer->width(), row);
+                          rows::unite(runs, row, next);
+                          std::swap(runs, next);
+                        });
 }
 
 RunLayer eroded(const RunWindow& window, const Ellipsoid& by, Beyond beyond) {
   const int width = window.middle().width();
   std::vector<int> row;
   std::vector<int> next;
-  return over_neighbours(window, by,
-                         [&](std::vector<int>& runs, const RunLayer* layer, int y, int half) {
-                           if (runs.empty() || (layer == nullptr && beyond == Beyond::kSame))
-                             return;
-                           grown(layer == nullptr ? rows::Row{} : layer->row(y), -half, width, row);
-                           rows::intersect(runs, row, next);
-                           std::swap(runs, next);
-                         });
+  return over_neighbors(window, by,
+                        [&](std::vector<int>& runs, const RunLayer* layer, int y, int half) {
+                          if (runs.empty() || (layer == nullptr && beyond == Beyond::kSame)) return;
+                          grown(layer == nullptr ? rows::Row{} : layer->row(y), -half, width, row);
+                          rows::intersect(runs, row, next);
+                          std::swap(runs, next);
+                        });
 }
 
 }  // namespace binderjet

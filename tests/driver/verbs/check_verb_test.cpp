@@ -115,12 +115,12 @@ TEST_F(CheckVerb, NamesALoosePiece) {
 }
 
 TEST_F(CheckVerb, NamesTheLikelyUnitOfAPartThatIsTooSmallOrTooLarge) {
-  models::write_obj(box({0, 0, 0}, {0.14, 0.22, 0.19}), here_ / "metres.obj");
-  const Ran metres = here_.run({"check", here_ / "metres.obj", "-p", "z450", "--json"});
-  EXPECT_EQ(metres.status, 0);
-  EXPECT_EQ(metres.json()["verdict"], "doubtful size");
-  EXPECT_THAT(metres.err,
-              HasSubstr("probably in metres: say --units m (140.0 x 220.0 x 190.0 mm)"));
+  models::write_obj(box({0, 0, 0}, {0.14, 0.22, 0.19}), here_ / "meters.obj");
+  const Ran meters = here_.run({"check", here_ / "meters.obj", "-p", "z450", "--json"});
+  EXPECT_EQ(meters.status, 0);
+  EXPECT_EQ(meters.json()["verdict"], "doubtful size");
+  EXPECT_THAT(meters.err,
+              HasSubstr("probably in meters: say --units m (140.0 x 220.0 x 190.0 mm)"));
 
   models::write_obj(box({0, 0, 0}, {0.01, 0.01, 0.01}), here_ / "dust.obj");
   const Ran dust = here_.run({"check", here_ / "dust.obj", "-p", "z450", "--json"});

@@ -11,7 +11,7 @@ from selenium.webdriver.common.by import By
 from selenium.webdriver.common.keys import Keys
 from selenium.webdriver.support.ui import WebDriverWait
 
-# The colours in every 3rd mask pixel that a view shows, in the first of its voxels.
+# The colors in every 3rd mask pixel that a view shows, in the first of its voxels.
 SAMPLES = """
 const [id] = arguments;
 const canvas = document.getElementById(id);

@@ -106,7 +106,7 @@ TEST(ImageWithin, A3mfIsPngOrJpeg) {
   expect_the_image(folder.write("jpg.3mf", square_3mf(image_bytes("jpg"), "jpg", "image/jpeg")));
 }
 
-TEST(ImageWithin, IsNeutralGreyWithAWarningWhereItIsDamaged) {
+TEST(ImageWithin, IsNeutralGrayWithAWarningWhereItIsDamaged) {
   const colored::Folder folder;
   const std::string path =
       folder.write("a.glb", square_glb(image_bytes("png").substr(0, 60), "image/png"));
@@ -114,7 +114,7 @@ TEST(ImageWithin, IsNeutralGreyWithAWarningWhereItIsDamaged) {
   std::vector<std::string> notes = file.warnings;
   const auto field = paint_field(std::move(file.paint), {}, notes);
   ASSERT_NE(field, nullptr);
-  EXPECT_NE(notes.back().find("grey"), std::string::npos) << notes.back();
+  EXPECT_NE(notes.back().find("gray"), std::string::npos) << notes.back();
   EXPECT_EQ(field->slab(-0.1, 0.1)->at({0.5, 0.5, 0}), (FloatRgb{192, 192, 192}));
 }
 

@@ -66,7 +66,7 @@ bool boundary_voxel(const Layers& layers, int x, int y, int s) {
            voxel(layers, x, y + 1, s) && voxel(layers, x, y, s - 1) && voxel(layers, x, y, s + 1));
 }
 
-// The centres of a pixel's boundary voxels.
+// The centers of a pixel's boundary voxels.
 std::vector<Point> boundary_centers(const Layers& layers, int i, int j, int k) {
   std::vector<Point> centers;
   for (int v = 0; v < 8; ++v) {
@@ -80,7 +80,7 @@ std::vector<Point> boundary_centers(const Layers& layers, int i, int j, int k) {
 }
 
 // The share of pixels with boundary voxels, in the mask or not, whose color is within `levels` of
-// `want`, which is given the centres of these voxels.
+// `want`, which is given the centers of these voxels.
 template <class Want>
 double share_within(const Layers& layers, double levels, Want want) {
   std::int64_t compared = 0;
@@ -190,7 +190,7 @@ TEST(Shell, GoesAsDeepAsItIsToldAlongEveryAxis) {
   const auto is_red = [&](int i, int j, int layer) {
     return layers.at(i, j, layer) == Rgb{200, 0, 0};
   };
-  // Centres at (n + 1/2) pitch below the face, up to 0.6 mm: 7 of 0.0847, 11 of 0.0564, 6 of 0.102.
+  // Centers at (n + 1/2) pitch below the face, up to 0.6 mm: 7 of 0.0847, 11 of 0.0564, 6 of 0.102.
   EXPECT_EQ(depth([&](int n) { return is_red(margin[0] + n, y, k); }), 7);
   EXPECT_EQ(depth([&](int n) { return is_red(x, margin[1] + n, k); }), 11);
   EXPECT_EQ(depth([&](int n) { return is_red(x, y, n); }), 6);

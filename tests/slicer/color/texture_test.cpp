@@ -111,7 +111,7 @@ TEST(Texture, EdgesOfACheckerboardLieWithinOnePixelOnAllSixFaces) {
   EXPECT_GT(compared, 20000);
 }
 
-TEST(Texture, IsNeutralGreyWithAWarningWhereTheImageIsMissing) {
+TEST(Texture, IsNeutralGrayWithAWarningWhereTheImageIsMissing) {
   const colored::Folder folder;
   folder.write("cube.mtl", "newmtl board\nmap_Kd nowhere.png\n");
   std::vector<std::string> notes;
@@ -122,7 +122,7 @@ TEST(Texture, IsNeutralGreyWithAWarningWhereTheImageIsMissing) {
   EXPECT_EQ(field->slab(0, 1)->at({1, 1, 0}), (FloatRgb{192, 192, 192}));
 }
 
-TEST(Texture, IsNeutralGreyWithAWarningWhereTheImageIsDamaged) {
+TEST(Texture, IsNeutralGrayWithAWarningWhereTheImageIsDamaged) {
   const colored::Folder folder;
   folder.write("board.png", "\x89PNG\r\n\x1a\nnot really");
   folder.write("cube.mtl", "newmtl board\nmap_Kd board.png\n");

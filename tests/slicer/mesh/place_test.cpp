@@ -130,7 +130,7 @@ TEST(Place, RefusesAWishOffTheBedOrInAnotherPart) {
 
 TEST(Place, WarnsOfAPartTooSmallToBeMeant) {
   EXPECT_THAT(doubtful_size(request({0.044, 0.014, 0.047})),
-              HasSubstr("probably in metres: say --units m (44.0 x 14.0 x 47.0 mm)"));
+              HasSubstr("probably in meters: say --units m (44.0 x 14.0 x 47.0 mm)"));
   EXPECT_THAT(doubtful_size(request({0.9, 0.5, 0.5})),
               HasSubstr("probably in inches: say --units in (22.9 x 12.7 x 12.7 mm)"));
   EXPECT_THAT(doubtful_size(request({20, 0.5, 0.5})), IsEmpty());

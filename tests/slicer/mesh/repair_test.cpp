@@ -122,9 +122,9 @@ TEST(Repair, MergesPointsOnlyIfThatIsNeeded) {
   EXPECT_TRUE(is_closed(mesh));
 }
 
-TEST(Repair, OrientsFacesThatRunAgainstTheirNeighbours) {
+TEST(Repair, OrientsFacesThatRunAgainstTheirNeighbors) {
   Mesh mesh = shuffled(box(), 0b000100000010);
-  EXPECT_THAT(repair_mesh(mesh, "x").notes, ElementsAre("turned 2 faces against their neighbours"));
+  EXPECT_THAT(repair_mesh(mesh, "x").notes, ElementsAre("turned 2 faces against their neighbors"));
   EXPECT_DOUBLE_EQ(signed_volume(mesh), 1.0);
 }
 

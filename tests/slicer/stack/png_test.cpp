@@ -12,15 +12,15 @@
 namespace binderjet {
 namespace {
 
-TEST(Png, IsOneBitGreyWithTheTrueResolution) {
+TEST(Png, IsOneBitGrayWithTheTrueResolution) {
   const std::vector<std::byte> bits(2 * 3, std::byte{0xa0});
   const png::Decoded png = png::decode(encode_png_mask(bits, 11, 3, {25.4 / 300, 25.4 / 450}));
   EXPECT_EQ(png.bit_depth, 1);
   EXPECT_EQ(png.color_type, PNG_COLOR_TYPE_GRAY);
   EXPECT_EQ(png.width, 11);
   EXPECT_EQ(png.height, 3);
-  EXPECT_EQ(png.per_metre_x, 11811U);  // 300 dpi
-  EXPECT_EQ(png.per_metre_y, 17717U);  // 450 dpi
+  EXPECT_EQ(png.per_meter_x, 11811U);  // 300 dpi
+  EXPECT_EQ(png.per_meter_y, 17717U);  // 450 dpi
 }
 
 TEST(Png, LibpngReadsBackEveryBit) {

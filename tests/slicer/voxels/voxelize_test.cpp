@@ -35,10 +35,10 @@ std::int64_t solid(const std::vector<RunLayer>& slices) {
   return ones;
 }
 
-constexpr Grid kMillimetre{{1, 1, 1}, {1, 1, 1}};
+constexpr Grid kMillimeter{{1, 1, 1}, {1, 1, 1}};
 
 TEST(Voxelize, FillsABoxWhoseFacesLieOnTheGrid) {
-  const std::vector<RunLayer> slices = all_slices(box({0, 0, 0}, {5, 4, 3}), kMillimetre);
+  const std::vector<RunLayer> slices = all_slices(box({0, 0, 0}, {5, 4, 3}), kMillimeter);
   ASSERT_EQ(slices.size(), 3U);
   for (const RunLayer& slice : slices) {
     EXPECT_EQ(slice.width(), 5);
@@ -47,11 +47,11 @@ TEST(Voxelize, FillsABoxWhoseFacesLieOnTheGrid) {
   }
 }
 
-TEST(Voxelize, CountsACentreOnTheLowerFaceAsInsideAndOnTheUpperAsOutside) {
-  // Centres are at 0.5, 1.5 ...: a box from 0.5 to 2.5 holds 0.5 and 1.5 but not 2.5.
+TEST(Voxelize, CountsACenterOnTheLowerFaceAsInsideAndOnTheUpperAsOutside) {
+  // Centers are at 0.5, 1.5 ...: a box from 0.5 to 2.5 holds 0.5 and 1.5 but not 2.5.
   const Mesh mesh =
       joined(box({0, 0, 0}, {0.25, 0.25, 0.25}), box({0.5, 0.5, 0.5}, {2.5, 2.5, 2.5}));
-  const std::vector<RunLayer> slices = all_slices(mesh, kMillimetre);
+  const std::vector<RunLayer> slices = all_slices(mesh, kMillimeter);
   ASSERT_EQ(slices.size(), 3U);
   for (int z = 0; z < 3; ++z) {
     for (int y = 0; y < 3; ++y) {
@@ -65,13 +65,13 @@ TEST(Voxelize, CountsACentreOnTheLowerFaceAsInsideAndOnTheUpperAsOutside) {
 
 TEST(Voxelize, KeepsACavityAndUnitesShellsThatOverlap) {
   const Mesh hollow = joined(box({0, 0, 0}, {9, 9, 9}), inside_out(box({3, 3, 3}, {6, 6, 6})));
-  EXPECT_EQ(solid(all_slices(hollow, kMillimetre)), 9 * 9 * 9 - 27);
+  EXPECT_EQ(solid(all_slices(hollow, kMillimeter)), 9 * 9 * 9 - 27);
   const Mesh united = joined(box({0, 0, 0}, {6, 3, 3}), box({3, 0, 0}, {9, 3, 3}));
-  EXPECT_EQ(solid(all_slices(united, kMillimetre)), 9 * 3 * 3);
+  EXPECT_EQ(solid(all_slices(united, kMillimeter)), 9 * 3 * 3);
 }
 
 TEST(Voxelize, TakesAnInsideOutShellAsSolid) {
-  EXPECT_EQ(solid(all_slices(inside_out(box({0, 0, 0}, {4, 4, 4})), kMillimetre)), 64);
+  EXPECT_EQ(solid(all_slices(inside_out(box({0, 0, 0}, {4, 4, 4})), kMillimeter)), 64);
 }
 
 TEST(Voxelize, GivesTheVolumeOfASphere) {

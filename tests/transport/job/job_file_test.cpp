@@ -174,7 +174,7 @@ TEST(CutJob, IsReadUpToItsLastWholeLayerAndSaysSo) {
       layers += entry.kind == RecordKind::kColor && entry.end() <= length ? 1 : 0;
     }
     // Cut behind the first mask and before the next record says its kind: nobody can know that
-    // colour was to follow.
+    // color was to follow.
     const std::uint64_t mask_end = reader->entries()[0].end();
     const bool lone_mask =
         layers == 0 && length >= mask_end && length < mask_end + job_format::kRecordHeadBytes;

@@ -14,7 +14,7 @@ namespace {
 // A patch reaches so many pixels and layers beyond the fault.
 constexpr std::array<int, 4> kAroundPx{0, 1, 3, 7};
 constexpr int kAroundLayers = 3;
-// What is seen around a patch and what it changes, in pixels and in layers: wear, and neighbours.
+// What is seen around a patch and what it changes, in pixels and in layers: wear, and neighbors.
 constexpr int kBeside = 4;
 // Noise has no end of faults; only so many of a stretch, the largest, are worth the time.
 constexpr std::size_t kMostFaults = 64;

@@ -177,7 +177,7 @@ bool Stretch::take(const Patch& patch) {
   }
   const LayerRange seen = grown(prints, LayerReach::both_sides(1), {0, count()});
   for (int k = seen.first; k < seen.last; ++k) {
-    // The ends lack a neighbour, but keep what was seen with it.
+    // The ends lack a neighbor, but keep what was seen with it.
     const bool at_end = (k == 0 && open_below_) || (k == count() - 1 && open_above_);
     if (!at_end) look_at(next, k);
   }

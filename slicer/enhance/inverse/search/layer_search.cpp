@@ -14,7 +14,7 @@
 namespace binderjet {
 namespace {
 
-// Tiles overlap by this much, so that no pixel is settled before its neighbours have been seen.
+// Tiles overlap by this much, so that no pixel is settled before its neighbors have been seen.
 constexpr int kOverlapPx = 4;
 // Sweeps over a tile; trials end after 3 to 8.
 constexpr int kMostSweeps = 20;

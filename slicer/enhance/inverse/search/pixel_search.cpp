@@ -9,7 +9,7 @@ namespace {
 constexpr std::array<Pixel, 8> kAround{
     {{-1, -1}, {0, -1}, {1, -1}, {-1, 0}, {1, 0}, {-1, 1}, {0, 1}, {1, 1}}};
 
-// The pixels' rectangle and one pixel on each side, so that neighbours need no test.
+// The pixels' rectangle and one pixel on each side, so that neighbors need no test.
 Rect bounds(std::span<const Pixel> pixels) {
   if (pixels.empty()) return {};
   Rect rect{pixels[0][0], pixels[0][1], pixels[0][0], pixels[0][1]};

@@ -88,7 +88,7 @@ struct ScanOf {
   double z_origin_mm = 0;  // as much is seen above
 };
 
-// Writes what a scanner of that pose sees of the part, in greys 40 to 210.
+// Writes what a scanner of that pose sees of the part, in grays 40 to 210.
 void write_scan(const std::string& folder, const Part& part, const StackInfo& frame,
                 const ScanOf& scan, unsigned seed) {
   StackInfo info;
@@ -103,7 +103,7 @@ void write_scan(const std::string& folder, const Part& part, const StackInfo& fr
   std::normal_distribution<double> noise(0, scan.noise);
   const double turn = scan.pose.turn_deg * std::numbers::pi / 180;
   for (int k = 0; k < info.size[2]; ++k) {
-    GreyPlane plane;
+    GrayPlane plane;
     plane.width = info.size[0];
     plane.height = info.size[1];
     plane.pitch_mm = {scan.pitch_mm, scan.pitch_mm};
@@ -135,8 +135,8 @@ void write_scan(const std::string& folder, const Part& part, const StackInfo& fr
     for (int y = 0; y < info.size[1]; ++y) {
       for (int x = 0; x < info.size[0]; ++x) {
         const double value = plane.at(x + aside, y + aside) + noise(random);
-        const double grey = std::clamp(40 + 170 * value, 0.0, 255.0);
-        rgb.insert(rgb.end(), 3, static_cast<std::byte>(std::lround(grey)));
+        const double gray = std::clamp(40 + 170 * value, 0.0, 255.0);
+        rgb.insert(rgb.end(), 3, static_cast<std::byte>(std::lround(gray)));
       }
     }
     stack.write_rgb(k, rgb);
@@ -187,7 +187,7 @@ TEST(Measured, FindsShiftAndTurnUnderBlurAndNoise) {
     ASSERT_TRUE(measured.registration);
     expect_pose(*measured.registration, scan.pose);
     EXPECT_NEAR(measured.registration->scale[0], 1, 5e-4);
-    EXPECT_NEAR(measured.greys.noise, 0.05, 0.01);
+    EXPECT_NEAR(measured.grays.noise, 0.05, 0.01);
     EXPECT_EQ(measured.registration->pose.shift_mm[2], 0);
     // Within a quarter of a voxel of the edges on average: 0.01 mm of some 100 mm of edge.
     std::int64_t off = 0;
@@ -294,7 +294,7 @@ TEST(Measured, TakesAStackOnTheVoxelGridBitForBit) {
   const Measured measured = read_measured(place / "scan", frame, predicted(plate, frame));
   EXPECT_FALSE(measured.registration);
   EXPECT_EQ(measured.layers, truth);
-  EXPECT_EQ(measured.greys.noise, 0);
+  EXPECT_EQ(measured.grays.noise, 0);
 }
 
 // A stack at the printer's pixels, as the emulated printer gives it, a pixel to the right of the

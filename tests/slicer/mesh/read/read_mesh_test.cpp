@@ -128,7 +128,7 @@ TEST(ReadMesh, KeepsDoublesAsTheyAreWritten) {
   EXPECT_EQ(file.mesh.points[0], (Point{0.1, 0.0 + 1e-320, 123456789.123456789}));
 }
 
-TEST(ReadMesh, ReadsOffWithColoursAndComments) {
+TEST(ReadMesh, ReadsOffWithColorsAndComments) {
   const MeshFile file = read("a.off",
                              "COFF # a comment\n4 2 0\n0 0 0 1 0 0 1\n1 0 0 1 0 0 1\n1 1 0 1 0 0 "
                              "1\n0 1 0 1 0 0 1\n\n4 0 1 2 3 255 0 0\n3 0 1 2\n");

@@ -95,7 +95,7 @@ std::string glb(const std::string& node) {
   return glb_file(json, data);
 }
 
-TEST(ReadGltf, StandsWhereItsNodePutsItAndWarnsOfMetres) {
+TEST(ReadGltf, StandsWhereItsNodePutsItAndWarnsOfMeters) {
   const MeshFile file = read("a.glb", glb("\"translation\":[10,0,0],\"scale\":[2,2,2],"));
   EXPECT_TRUE(is_closed(file.mesh));
   EXPECT_NEAR(signed_volume(file.mesh), 8.0, 1e-9);

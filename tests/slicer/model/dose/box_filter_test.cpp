@@ -16,7 +16,7 @@ RunLayer layer_of(int width, int height, const std::vector<bool>& bits) {
   return layer;
 }
 
-TEST(BoxWeights, CentreAnEvenBoxWithHalfWeightsAtItsEnds) {
+TEST(BoxWeights, CenterAnEvenBoxWithHalfWeightsAtItsEnds) {
   const BoxWeights weights = box_weights(16);
   EXPECT_EQ(weights.reach, 8);
   EXPECT_EQ(weights.end * 2, weights.full);

@@ -11,7 +11,7 @@
 
 namespace binderjet {
 
-struct GreyPlane {
+struct GrayPlane {
   int width = 0;
   int height = 0;
   std::array<double, 2> pitch_mm{};
@@ -30,22 +30,22 @@ struct GreyPlane {
     const auto a = static_cast<std::size_t>(axis);
     return origin_mm[a] + (i + 0.5) * pitch_mm[a];
   }
-  // Bilinear between the centres of samples.
+  // Bilinear between the centers of samples.
   double sample(double x_mm, double y_mm) const;
 };
 
 // The share of solid in cells of factor[0] x factor[1] voxels.
-GreyPlane coverage(const RunLayer& layer, std::array<double, 2> pitch_mm,
+GrayPlane coverage(const RunLayer& layer, std::array<double, 2> pitch_mm,
                    std::array<double, 2> origin_mm, std::array<int, 2> factor);
 
 // Averages of cells of factor[0] x factor[1] samples.
-GreyPlane coarsened(const GreyPlane& plane, std::array<int, 2> factor);
+GrayPlane coarsened(const GrayPlane& plane, std::array<int, 2> factor);
 
 // Convolved with a normal distribution of this standard deviation; powder all around. The result
 // reaches three deviations further on each side.
-GreyPlane blurred(const GreyPlane& plane, double sigma_mm);
+GrayPlane blurred(const GrayPlane& plane, double sigma_mm);
 
 // sum += weight * plane; both of one grid.
-void add_scaled(GreyPlane& sum, const GreyPlane& plane, double weight);
+void add_scaled(GrayPlane& sum, const GrayPlane& plane, double weight);
 
 }  // namespace binderjet

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "slicer/calibrate/scan/grey_image.h"
+#include "slicer/calibrate/scan/gray_image.h"
 
 #include <algorithm>
 #include <cmath>
@@ -9,9 +9,9 @@ namespace {
 
 int cells(int samples, int factor) { return (samples + factor - 1) / factor; }
 
-GreyPlane empty_cells(int width, int height, std::array<double, 2> pitch_mm,
+GrayPlane empty_cells(int width, int height, std::array<double, 2> pitch_mm,
                       std::array<double, 2> origin_mm, std::array<int, 2> factor) {
-  GreyPlane plane;
+  GrayPlane plane;
   plane.width = cells(width, factor[0]);
   plane.height = cells(height, factor[1]);
   plane.pitch_mm = {pitch_mm[0] * factor[0], pitch_mm[1] * factor[1]};
@@ -21,7 +21,7 @@ GreyPlane empty_cells(int width, int height, std::array<double, 2> pitch_mm,
   return plane;
 }
 
-// Half a normal distribution, centre first; the whole adds up to 1.
+// Half a normal distribution, center first; the whole adds up to 1.
 std::vector<float> half_bell(double sigma_samples) {
   const int reach = std::max(1, static_cast<int>(std::ceil(3 * sigma_samples)));
   std::vector<float> bell;
@@ -37,7 +37,7 @@ std::vector<float> half_bell(double sigma_samples) {
 
 }  // namespace
 
-double GreyPlane::sample(double x_mm, double y_mm) const {
+double GrayPlane::sample(double x_mm, double y_mm) const {
   const double x = (x_mm - origin_mm[0]) / pitch_mm[0] - 0.5;
   const double y = (y_mm - origin_mm[1]) / pitch_mm[1] - 0.5;
   if (x <= -1 || y <= -1 || x >= width || y >= height) return 0;
@@ -49,9 +49,9 @@ double GreyPlane::sample(double x_mm, double y_mm) const {
          v * ((1 - u) * at(i, j + 1) + u * at(i + 1, j + 1));
 }
 
-GreyPlane coverage(const RunLayer& layer, std::array<double, 2> pitch_mm,
+GrayPlane coverage(const RunLayer& layer, std::array<double, 2> pitch_mm,
                    std::array<double, 2> origin_mm, std::array<int, 2> factor) {
-  GreyPlane plane = empty_cells(layer.width(), layer.height(), pitch_mm, origin_mm, factor);
+  GrayPlane plane = empty_cells(layer.width(), layer.height(), pitch_mm, origin_mm, factor);
   const float share = 1.0F / static_cast<float>(factor[0] * factor[1]);
   for (int y = 0; y < layer.height(); ++y) {
     const std::span<const int> row = layer.row(y);
@@ -63,9 +63,9 @@ GreyPlane coverage(const RunLayer& layer, std::array<double, 2> pitch_mm,
   return plane;
 }
 
-GreyPlane coarsened(const GreyPlane& plane, std::array<int, 2> factor) {
+GrayPlane coarsened(const GrayPlane& plane, std::array<int, 2> factor) {
   if (factor[0] == 1 && factor[1] == 1) return plane;
-  GreyPlane out = empty_cells(plane.width, plane.height, plane.pitch_mm, plane.origin_mm, factor);
+  GrayPlane out = empty_cells(plane.width, plane.height, plane.pitch_mm, plane.origin_mm, factor);
   const float share = 1.0F / static_cast<float>(factor[0] * factor[1]);
   for (int y = 0; y < plane.height; ++y) {
     for (int x = 0; x < plane.width; ++x) {
@@ -76,12 +76,12 @@ GreyPlane coarsened(const GreyPlane& plane, std::array<int, 2> factor) {
   return out;
 }
 
-GreyPlane blurred(const GreyPlane& plane, double sigma_mm) {
+GrayPlane blurred(const GrayPlane& plane, double sigma_mm) {
   const std::vector<float> x_bell = half_bell(sigma_mm / plane.pitch_mm[0]);
   const std::vector<float> y_bell = half_bell(sigma_mm / plane.pitch_mm[1]);
   const int x_reach = static_cast<int>(x_bell.size()) - 1;
   const int y_reach = static_cast<int>(y_bell.size()) - 1;
-  GreyPlane rows =
+  GrayPlane rows =
       empty_cells(plane.width + 2 * x_reach, plane.height, plane.pitch_mm,
                   {plane.origin_mm[0] - x_reach * plane.pitch_mm[0], plane.origin_mm[1]}, {1, 1});
   for (int y = 0; y < rows.height; ++y) {
@@ -95,7 +95,7 @@ GreyPlane blurred(const GreyPlane& plane, double sigma_mm) {
       rows.values[rows.index(x, y)] = sum;
     }
   }
-  GreyPlane out =
+  GrayPlane out =
       empty_cells(rows.width, rows.height + 2 * y_reach, rows.pitch_mm,
                   {rows.origin_mm[0], rows.origin_mm[1] - y_reach * rows.pitch_mm[1]}, {1, 1});
   for (int y = 0; y < out.height; ++y) {
@@ -111,7 +111,7 @@ GreyPlane blurred(const GreyPlane& plane, double sigma_mm) {
   return out;
 }
 
-void add_scaled(GreyPlane& sum, const GreyPlane& plane, double weight) {
+void add_scaled(GrayPlane& sum, const GrayPlane& plane, double weight) {
   const auto factor = static_cast<float>(weight);
   for (std::size_t i = 0; i < sum.values.size(); ++i) sum.values[i] += factor * plane.values[i];
 }
