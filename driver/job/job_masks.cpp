@@ -26,9 +26,8 @@ Pipeline<MaskLayer> enhanced(const JobHeader& header, const Pipeline<VoxelLayer>
 }
 
 // "3 islands of fewer than 4 pixels".
-std::string regions(std::int64_t count, const char* word, int least_px) {
-  return fmt::format("{} {}{} of fewer than {} pixels", count, word, count == 1 ? "" : "s",
-                     least_px);
+std::string regions(std::int64_t count, const char* word, int min_px) {
+  return fmt::format("{} {}{} of fewer than {} pixels", count, word, count == 1 ? "" : "s", min_px);
 }
 
 }  // namespace

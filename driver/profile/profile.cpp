@@ -154,10 +154,9 @@ void parse_device(Table table, Profile& profile) {
 
 MaskRules parse_mask(Table table) {
   MaskRules rules;
-  constexpr int kMostPx = 64;
-  if (table.has("min_island_px"))
-    rules.min_island_px = table.whole_number("min_island_px", kMostPx);
-  if (table.has("min_hole_px")) rules.min_hole_px = table.whole_number("min_hole_px", kMostPx);
+  constexpr int kMaxPx = 64;
+  if (table.has("min_island_px")) rules.min_island_px = table.whole_number("min_island_px", kMaxPx);
+  if (table.has("min_hole_px")) rules.min_hole_px = table.whole_number("min_hole_px", kMaxPx);
   table.no_other_keys();
   return rules;
 }

@@ -176,9 +176,9 @@ std::string effects_table(const std::vector<FoundEffect>& effects) {
   for (const FoundEffect& effect : effects) {
     std::vector<std::string> rivals;
     for (const std::string& rival : effect.rivals) rivals.push_back(readable(rival));
-    constexpr std::size_t kMostNumbers = 8;  // more are for a list of their own
+    constexpr std::size_t kMaxNumbers = 8;  // more are for a list of their own
     rows.push_back({readable(effect.kind), text_of(effect.covariate),
-                    effect.parameters.size() <= kMostNumbers
+                    effect.parameters.size() <= kMaxNumbers
                         ? numbers_text(effect.parameters)
                         : fmt::format("{} numbers", effect.parameters.size()),
                     rivals.empty() ? "-" : fmt::format("{}", fmt::join(rivals, ", ")),

@@ -27,12 +27,12 @@ class LargestOf {
  public:
   void add(const T& found) {
     found_.push_back(found);
-    if (found_.size() <= 2 * kMostListed) return;
-    std::nth_element(found_.begin(), found_.begin() + kMostListed, found_.end(), is_larger);
-    found_.resize(kMostListed);
+    if (found_.size() <= 2 * kMaxListed) return;
+    std::nth_element(found_.begin(), found_.begin() + kMaxListed, found_.end(), is_larger);
+    found_.resize(kMaxListed);
   }
   // At most `most`, the largest.
-  std::vector<T> largest(std::size_t most = kMostListed) const {
+  std::vector<T> largest(std::size_t most = kMaxListed) const {
     std::vector<T> sorted = found_;
     std::sort(sorted.begin(), sorted.end(), is_larger);
     if (sorted.size() > most) sorted.resize(most);
@@ -40,7 +40,7 @@ class LargestOf {
   }
 
  private:
-  static constexpr std::size_t kMostListed = 10000;
+  static constexpr std::size_t kMaxListed = 10000;
   static bool is_larger(const T& a, const T& b) { return larger(a, b); }
 
   std::vector<T> found_;

@@ -41,9 +41,9 @@ MaskRegions regions_of(const MaskSource& masks) {
 }
 
 // Null if there is none.
-nlohmann::ordered_json to_json(std::int64_t least_px) {
-  if (least_px == std::numeric_limits<std::int64_t>::max()) return nullptr;
-  return least_px;
+nlohmann::ordered_json to_json(std::int64_t min_px) {
+  if (min_px == std::numeric_limits<std::int64_t>::max()) return nullptr;
+  return min_px;
 }
 
 }  // namespace
@@ -116,8 +116,8 @@ nlohmann::ordered_json to_json(const ScoreSheet& sheet) {
       {"window_excess", {{"mean", sheet.window_mean}, {"worst", sheet.window_worst}}},
       {"epe_mm", {{"mean", edges.mean_mm()}, {"p95", edges.p95_mm()}, {"max", edges.max_mm()}}}};
   for (const FaultKind kind : kFaultKinds) json[std::string(word(kind))] = sheet.score.faults[kind];
-  json["mask"] = {{"least_island_px", to_json(sheet.masks.least_island_px)},
-                  {"least_hole_px", to_json(sheet.masks.least_hole_px)}};
+  json["mask"] = {{"least_island_px", to_json(sheet.masks.smallest_island_px)},
+                  {"least_hole_px", to_json(sheet.masks.smallest_hole_px)}};
   return json;
 }
 

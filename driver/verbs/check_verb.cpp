@@ -26,8 +26,8 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-constexpr std::size_t kMostNamed = 100;  // with --json
-constexpr std::size_t kMostTold = 8;     // to a person, of each kind
+constexpr std::size_t kMaxNamed = 100;  // with --json
+constexpr std::size_t kMaxTold = 8;     // to a person, of each kind
 
 // How to say what is found.
 struct Saying {
@@ -165,11 +165,11 @@ void check(const SliceOptions& options, const Console& console) {
     text +=
         fmt::format("{} {} ({}):\n", kind.count, kind.count == 1 ? say.one : say.many, say.meaning);
     std::size_t told = 0;
-    for (const Region& region : kind.regions.largest(kMostNamed)) {
+    for (const Region& region : kind.regions.largest(kMaxNamed)) {
       all.push_back(located(say.word, region, origin_mm, header.grid));
-      if (told++ < kMostTold) text += place_text(all.back()) + "\n";
+      if (told++ < kMaxTold) text += place_text(all.back()) + "\n";
     }
-    const std::int64_t untold = kind.count - static_cast<std::int64_t>(kMostTold);
+    const std::int64_t untold = kind.count - static_cast<std::int64_t>(kMaxTold);
     if (untold > 0) text += fmt::format("  and {} smaller ones\n", untold);
   };
   for (const FaultKind kind : kFaultKinds) tell(saying(kind), checked.faults[kind]);

@@ -11,18 +11,18 @@ namespace binderjet {
 
 struct CalibrationLimits {
   // Fixed before any print is looked at (slicer/MODEL.md, How calibrate chooses, has the reasons).
-  double most_p = 0.01;        // chance, over all candidates together
-  double least_share = 0.015;  // of the residual's power, where the fit did not look
-  double least_gain = 0.04;    // of the printed error, on layers that the fit did not see
+  double max_p = 0.01;       // chance, over all candidates together
+  double min_share = 0.015;  // of the residual's power, where the fit did not look
+  double min_gain = 0.04;    // of the printed error, on layers that the fit did not see
   // k cells keep all their signs in 2^-k of the draws, so what acts in five cells (an edge, a few
-  // layers) has p >= 0.03 however strong it is. From large_share on p up to most_p_of_large is
+  // layers) has p >= 0.03 however strong it is. From large_share on p up to max_p_of_large is
   // enough: 100 prints with nothing hidden reached a share of 0.002.
   double large_share = 0.1;
-  double most_p_of_large = 0.05;
-  int most_effects = 6;
+  double max_p_of_large = 0.05;
+  int max_effects = 6;
 
   bool sure(double p, double share) const {
-    return p <= most_p || (p <= most_p_of_large && share >= large_share);
+    return p <= max_p || (p <= max_p_of_large && share >= large_share);
   }
 };
 

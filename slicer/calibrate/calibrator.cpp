@@ -50,7 +50,7 @@ Calibrator::Calibrator(const MeasuredJob& job, const EffectList& declared,
       errors_(first_errors_) {}
 
 void Calibrator::run() {
-  while (static_cast<int>(accepted_.size()) < limits_.most_effects && add_one()) {
+  while (static_cast<int>(accepted_.size()) < limits_.max_effects && add_one()) {
   }
   drop_superseded();
   if (!accepted_.empty()) refit_all();
@@ -96,7 +96,7 @@ bool Calibrator::add_one() {
 // What the residual in dose points to. The regression is linear and blind to what was fused or
 // lost; the real forward model decides among those that it cannot part by far.
 std::vector<Calibrator::FittedCandidate> Calibrator::fit_ranked_candidates() {
-  constexpr std::size_t kMostTried = 4;
+  constexpr std::size_t kMaxTried = 4;
   constexpr int kTrialRounds = 3;
   const std::vector<Candidate> candidates = all_candidates(job_.extent(), model_);
   const auto points = surface_points(job_, model_, seen_, kChoicePoints, kPairReachMm);
@@ -108,14 +108,14 @@ std::vector<Calibrator::FittedCandidate> Calibrator::fit_ranked_candidates() {
   remaining_ = Remaining{winner.covariate, std::max(0.0, best.share)};
   step_(fmt::format("best is {} of {} ({}): {:.3f} of the residual, p {:.3f}", winner.kind,
                     word(winner.covariate.axis), word(winner.covariate.form), best.share, best.p));
-  if (!limits_.sure(best.p, best.share) || best.share < limits_.least_share || !best.folds_agree)
+  if (!limits_.sure(best.p, best.share) || best.share < limits_.min_share || !best.folds_agree)
     return {};
   untried_equals_.clear();
   std::vector<FittedCandidate> out;
   for (std::size_t i = 0; i < ranked.size(); ++i) {
     const ScoredCandidate& scored = ranked[i];
     const Candidate& candidate = candidates[scored.place];
-    if (i >= kMostTried) {
+    if (i >= kMaxTried) {
       if (scored.equal && candidate.named) untried_equals_.push_back(candidate.kind);
       continue;
     }
@@ -129,10 +129,10 @@ std::vector<Calibrator::FittedCandidate> Calibrator::fit_ranked_candidates() {
 
 // What only the printed voxels show.
 std::vector<Calibrator::FittedCandidate> Calibrator::fit_ranked_trials() {
-  constexpr std::size_t kMostTried = 2;
+  constexpr std::size_t kMaxTried = 2;
   std::vector<FittedCandidate> out;
   for (ScoredTrial& trial : rank_trials(job_, model_, seen_)) {
-    if (out.size() == kMostTried || trial.share < limits_.least_gain) break;
+    if (out.size() == kMaxTried || trial.share < limits_.min_gain) break;
     step_(fmt::format("tried {}: {:.3f} of the wrong voxels, p {:.3f}{}", trial.candidate.kind,
                       trial.share, trial.p, trial.folds_agree ? "" : ", in some places only"));
     if (!limits_.sure(trial.p, trial.share) || !trial.folds_agree) continue;
@@ -164,8 +164,8 @@ bool Calibrator::accept_best(std::vector<FittedCandidate> fitted) {
                     errors_.held, errors.held));
   const auto enough = [&](double Errors::*of) {
     const double gain = errors_.*of - errors.*of;
-    return gain >= limits_.least_gain * errors_.*of &&
-           gain >= limits_.least_gain / 2 * first_errors_.*of;
+    return gain >= limits_.min_gain * errors_.*of &&
+           gain >= limits_.min_gain / 2 * first_errors_.*of;
   };
   // What is in some layers only may be in none of those not seen: folds along x and y have judged
   // it, and there it must do no harm.
@@ -252,7 +252,7 @@ void Calibrator::drop_superseded() {
     without = refit(job_, std::move(without), numbers, seen_, kLastRounds);
     const Errors errors = errors_of(without);
     const auto missed = [&](double Errors::*of) {
-      return errors.*of - errors_.*of > limits_.least_gain / 2 * errors.*of;
+      return errors.*of - errors_.*of > limits_.min_gain / 2 * errors.*of;
     };
     const bool in_layers = (accepted_[i].along & kAlongZ) != 0;
     if (missed(&Errors::held) || (in_layers && missed(&Errors::all))) {
@@ -294,7 +294,7 @@ void Calibrator::look_for_random_layers() {
   const auto points = surface_points(job_, model_, LayerChoice(job_.masks.size(), true),
                                      kChoicePoints, kPairReachMm);
   const auto found = find_random_layers(job_, model_, points, known_columns(points));
-  if (!found || found->p > limits_.most_p || found->share < limits_.least_gain) return;
+  if (!found || found->p > limits_.max_p || found->share < limits_.min_gain) return;
   model_.push_back(kind->random_layers(found->sigma_mm));
   AcceptedEffect accepted;
   accepted.found.kind = kind->name;

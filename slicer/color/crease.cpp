@@ -30,7 +30,7 @@ using Place = Kernel::Point_3;
 using Vector = Kernel::Vector_3;
 
 // More would cost minutes and show nothing: on a part as large as the bed these are 0.6 mm apart.
-constexpr double kMostSamples = 300'000;
+constexpr double kMaxSamples = 300'000;
 constexpr int kDirections = 32;
 constexpr unsigned kAround = 24;  // samples that say how the surface bends
 
@@ -59,7 +59,7 @@ Samples sample(const Mesh& mesh, double spacing_mm) {
   };
   double total = 0;
   for (const Triangle& t : mesh.triangles) total += face(t).area;
-  const double per_mm2 = std::min(1 / (spacing_mm * spacing_mm), kMostSamples / total);
+  const double per_mm2 = std::min(1 / (spacing_mm * spacing_mm), kMaxSamples / total);
   Samples samples;
   double owed = 1;  // one sample at least, however small the part
   double u = 0.5;

@@ -24,9 +24,9 @@ namespace binderjet {
 namespace {
 
 // A lid may be this much of the surface as it came. An open bowl's lid is half of it and more.
-constexpr double kMostInvented = 0.5;
+constexpr double kMaxInvented = 0.5;
 // Below this share of the box a volume is rounding.
-constexpr double kLeastVolume = 1e-9;
+constexpr double kMinVolume = 1e-9;
 // Up to this many triangles the surface is asked whether it goes through itself, which only earns
 // a remark; the answer takes 0.1 s there, and grows.
 constexpr std::size_t kSmall = 20'000;
@@ -225,7 +225,7 @@ class Repairer {
   void fill() {
     Mesh filled = mesh_;
     const ClosedHoles lids = close_holes(filled);
-    if (lids.area > kMostInvented * area_) {
+    if (lids.area > kMaxInvented * area_) {
       if (!(wall_ > 0)) {
         refuse(fmt::format(
             "is no closed surface: {} of its edges are open, and closing them would invent {:.0f} "
@@ -257,7 +257,7 @@ class Repairer {
     const Box box = bounding_box(mesh_);
     const double whole = box.size(0) * box.size(1) * box.size(2);
     const double volume = signed_volume(mesh_);
-    if (std::abs(volume) <= kLeastVolume * whole && !has_volume(whole)) {
+    if (std::abs(volume) <= kMinVolume * whole && !has_volume(whole)) {
       refuse(
           fmt::format("encloses no volume ({}); give the model a thickness",
                       counted(static_cast<std::int64_t>(mesh_.triangles.size()), "face", "faces")));
@@ -280,7 +280,7 @@ class Repairer {
       volumes[static_cast<std::size_t>(shells.of_triangle[t])] += signed_volume(one);
     }
     return std::any_of(volumes.begin(), volumes.end(),
-                       [&](double v) { return std::abs(v) > kLeastVolume * whole; });
+                       [&](double v) { return std::abs(v) > kMinVolume * whole; });
   }
 
   void remark(const EdgeCounts& edges) {

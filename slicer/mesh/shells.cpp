@@ -121,7 +121,7 @@ UnionFind join_over_edges(const Mesh& mesh) {
 
 void turn(Triangle& triangle) { std::swap(triangle[1], triangle[2]); }
 
-constexpr std::size_t kMostVisits = 50'000'000;  // triangles asked; about two seconds
+constexpr std::size_t kMaxVisits = 50'000'000;  // triangles asked; about two seconds
 
 Box box_of(const std::vector<Point>& points, const std::vector<Triangle>& triangles) {
   Box box;
@@ -242,7 +242,7 @@ int turn_shells_outward(Mesh& mesh) {
       if (other == s || !is_inside(boxes[s], boxes[other])) continue;
       // In a swarm of thousands of pieces, those that cannot be asked stay as they are.
       visits += pieces[other].size();
-      is_cavity = visits > kMostVisits ||
+      is_cavity = visits > kMaxVisits ||
                   std::abs(winding_number(mesh.points, pieces[other], own.points.front())) > 0.5;
     }
     turned[s] = !is_cavity;

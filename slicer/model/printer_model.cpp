@@ -29,10 +29,10 @@ void PrinterModel::choose_filter(const Grid& grid, const JobPlace& place) {
   const DoseTerm& first = form_.terms.front();
   const auto x = as_box(first.x);
   const auto y = as_box(first.y);
-  const PlacedDose& placed = form_.placed;
+  const BedDependence& placed = form_.placed;
   const bool anywhere = placed.gains.empty() && placed.shifts.empty() && placed.weak_drops.empty();
   if (form_.terms.size() == 1 && first.layer == 0 && first.gain == 1 && x && y && anywhere) {
-    filter_ = OneBox{*x, *y, least_sum(*x, *y, form_.level)};
+    filter_ = OneBox{*x, *y, min_sum(*x, *y, form_.level)};
   } else {
     filter_.emplace<DoseFilter>(form_.terms, form_.level, grid, form_.placed, place);
   }

@@ -31,10 +31,10 @@ class PrintedEdges {
         voxel_x_mm_(grid.voxel_mm(0)),
         voxel_y_mm_(grid.voxel_mm(1)) {}
 
-  // The distance from (x, y), in voxels, to the nearest edge, at most EdgeErrors::kMostMm. Rows
+  // The distance from (x, y), in voxels, to the nearest edge, at most EdgeErrors::kMaxMm. Rows
   // are asked outwards from the place's own until they lie farther off than what was found.
   double nearest_mm(double x, double y) const {
-    double best = EdgeErrors::kMostMm;
+    double best = EdgeErrors::kMaxMm;
     const int own = static_cast<int>(std::floor(y));
     for (int step = 0; (step - 1) * voxel_y_mm_ < best; ++step) {
       if (step > 0) look_at_row(own - step, x, y, best);
@@ -100,7 +100,7 @@ double EdgeErrors::p95_mm() const {
     within += of_um_[um];
     if (within * 100 >= edges_ * 95) return static_cast<double>(um) * 1e-3;
   }
-  return kMostMm;
+  return kMaxMm;
 }
 
 EdgeErrors edge_errors(const VoxelLayer& target, const RunLayer& printed, const Grid& grid) {

@@ -17,11 +17,11 @@ class EdgeErrors {
  public:
   // An edge without a printed one within this distance counts as this far: what is lost has no
   // place to be wrong about. Faults (slicer/score/faults.h) tell of that.
-  static constexpr double kMostMm = 2;
+  static constexpr double kMaxMm = 2;
 
-  EdgeErrors() : of_um_(static_cast<std::size_t>(kMostMm * 1000) + 1, 0) {}
+  EdgeErrors() : of_um_(static_cast<std::size_t>(kMaxMm * 1000) + 1, 0) {}
 
-  void add(double distance_mm);  // 0 <= distance_mm <= kMostMm
+  void add(double distance_mm);  // 0 <= distance_mm <= kMaxMm
   EdgeErrors& operator+=(const EdgeErrors& other);
 
   std::int64_t edges() const { return edges_; }

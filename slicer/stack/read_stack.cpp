@@ -25,7 +25,7 @@ bool good_pattern(const std::string& files) {
 }
 
 // With the largest size still an int.
-constexpr int kMostImages = 1 << 30;
+constexpr int kMaxImages = 1 << 30;
 
 StackKind kind_of(const std::string& name, const std::string& where) {
   for (const StackKind kind : {StackKind::kMask, StackKind::kTarget, StackKind::kPrinted,
@@ -62,7 +62,7 @@ StackInfo parse(const std::string& path) {
         throw Error(ErrorKind::kBadInput, path, "has a pitch outside 0 to 1000 mm");
       }
     }
-    if (info.first < 0 || info.first > kMostImages) {
+    if (info.first < 0 || info.first > kMaxImages) {
       throw Error(ErrorKind::kBadInput, path, "numbers its images from outside 0 to 2^30");
     }
     if (!good_pattern(info.files)) {

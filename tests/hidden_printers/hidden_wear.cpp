@@ -58,15 +58,15 @@ std::vector<Shared<RunLayer>> runs(const Solid3& solid) {
   return out;
 }
 
-// What stands thinner than `least_mm` along x or y within its layer is gone: walls by the length of
+// What stands thinner than `min_mm` along x or y within its layer is gone: walls by the length of
 // the run that they are in, first in rows, then in columns of what is left.
-void break_thin(Solid3& solid, double least_mm, const std::array<double, 3>& voxel_mm) {
+void break_thin(Solid3& solid, double min_mm, const std::array<double, 3>& voxel_mm) {
   const auto sweep = [&](int lines, int length, double step_mm, auto place) {
     for (int line = 0; line < lines; ++line) {
       for (int i = 0; i < length;) {
         int end = i;
         while (end < length && solid.v[place(line, end)] != 0) ++end;
-        if ((end - i) * step_mm < least_mm - 1e-9) {
+        if ((end - i) * step_mm < min_mm - 1e-9) {
           for (int k = i; k < end; ++k) solid.v[place(line, k)] = 0;
         }
         i = end + 1;

@@ -158,8 +158,8 @@ TEST(Inverse, KeepsToTheMaskRules) {
     const Volume masks = streamed(c, {0, c.layers}, kBlockLayers);
     for (int k = 0; k < c.layers; ++k) {
       const MaskRegions found = whole::mask_regions(whole::slice(masks, k));
-      ASSERT_GE(found.least_island_px, c.rules.min_island_px) << "layer " << k;
-      ASSERT_GE(found.least_hole_px, c.rules.min_hole_px) << "layer " << k;
+      ASSERT_GE(found.smallest_island_px, c.rules.min_island_px) << "layer " << k;
+      ASSERT_GE(found.smallest_hole_px, c.rules.min_hole_px) << "layer " << k;
     }
   }
 }

@@ -50,8 +50,8 @@ class MaskMinimum : public testing::TestWithParam<const char*> {
 
 TEST_P(MaskMinimum, HoldsForAGolfBallHoweverItsMasksAreMade) {
   const Sliced sliced = slice(header_, ball_);
-  EXPECT_GE(sliced.regions.least_island_px, header_.profile.mask.min_island_px);
-  EXPECT_GE(sliced.regions.least_hole_px, header_.profile.mask.min_hole_px);
+  EXPECT_GE(sliced.regions.smallest_island_px, header_.profile.mask.min_island_px);
+  EXPECT_GE(sliced.regions.smallest_hole_px, header_.profile.mask.min_hole_px);
 }
 
 TEST_P(MaskMinimum, ChangesAsMuchAsItSays) {

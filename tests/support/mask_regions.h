@@ -35,7 +35,7 @@ inline MaskRegions mask_regions(const RunLayer& mask) {
       add(x, y - 1);
       add(x, y + 1);
     }
-    std::int64_t& least = solid ? out.least_island_px : out.least_hole_px;
+    std::int64_t& least = solid ? out.smallest_island_px : out.smallest_hole_px;
     if (start > 0) least = std::min(least, static_cast<std::int64_t>(found.size()));
   }
   return out;

@@ -3,7 +3,7 @@
 // real numbers: what the streamed engine on runs and integers must agree with.
 //
 // Three formulas are shared with the engine, each of which has tests of its own: the gain of the
-// dose and the shift at a place (PlacedDose), the share of weak drops, and the density around a
+// dose and the shift at a place (BedDependence), the share of weak drops, and the density around a
 // place (DensityField). Where binder lands, how it spreads, from which layers it comes and what
 // wear takes is written here again.
 #pragma once
@@ -69,7 +69,7 @@ inline Binder landed(const Volume& mask, int layer, const AssembledModel& form, 
   constexpr int kFine = 16;
   const int rx = grid.detail_vx[0];
   const int ry = grid.detail_vx[1];
-  const PlacedDose& placed = form.placed;
+  const BedDependence& placed = form.placed;
   Binder out(mask.nx * rx, mask.ny * ry, room);
   for (int y = 0; y < mask.ny; ++y) {
     Spot spot = spot_at(grid, place, rx * mask.nx / 2.0, (y + 0.5) * ry - 0.5, layer);
@@ -137,7 +137,7 @@ inline WholePrint bound(const Volume& sent, const AssembledModel& form, const Gr
   const Volume mask = moved(sent, form);
   const int nx = mask.nx * grid.detail_vx[0];
   const int ny = mask.ny * grid.detail_vx[1];
-  const PlacedDose& placed = form.placed;
+  const BedDependence& placed = form.placed;
   const auto reach = form.reach(grid).xy_vx;
   const int room = std::max(reach[0], reach[1]) + 2;
   std::vector<Binder> binder;

@@ -19,7 +19,7 @@ constexpr std::size_t kSmallestPiece = 4 << 10;
 constexpr std::size_t kDepth = 4;
 constexpr std::size_t kInBytes = 16 << 10;
 constexpr std::size_t kMaxInput = 1 << 20;  // a device that says more unasked is out of its mind
-constexpr int kMostEmpty = 16;              // transfers in a row that succeed and move nothing
+constexpr int kMaxEmpty = 16;               // transfers in a row that succeed and move nothing
 constexpr auto kMemoryPause = std::chrono::milliseconds(50);
 constexpr auto kReapTime = std::chrono::milliseconds(500);
 constexpr unsigned kResetTimeoutMs = 300;
@@ -188,7 +188,7 @@ void UsbLink::out_done(libusb_transfer* transfer) {
   link.no_memory_ = false;  // something came back
   const bool empty = piece->taken == 0 && transfer->status == LIBUSB_TRANSFER_COMPLETED;
   link.empty_in_a_row_ = empty ? link.empty_in_a_row_ + 1 : 0;
-  if (link.empty_in_a_row_ > kMostEmpty) {
+  if (link.empty_in_a_row_ > kMaxEmpty) {
     link.set_state(LinkState::kBroken, "the printer takes no data and says that it does");
   }
   if (transfer->status == LIBUSB_TRANSFER_NO_DEVICE) {

@@ -34,12 +34,12 @@ Eigen::VectorXd gauss_newton(const std::vector<std::vector<float>>& columns,
   Eigen::MatrixXd gram = Eigen::MatrixXd::Zero(q, q);
   Eigen::VectorXd right = Eigen::VectorXd::Zero(q);
   // A point that is off by more than the others together says that something else happened there.
-  constexpr double kMostMissing = 0.25;
+  constexpr double kMaxMissing = 0.25;
   Eigen::VectorXd row(q);
   for (std::size_t i = 0; i < points.size(); ++i) {
     for (Eigen::Index c = 0; c < q; ++c) row[c] = columns[static_cast<std::size_t>(c)][i];
     gram += row * row.transpose();
-    right += row * std::clamp(points[i].missing, -kMostMissing, kMostMissing);
+    right += row * std::clamp(points[i].missing, -kMaxMissing, kMaxMissing);
   }
   gram.diagonal().array() *= 1 + 1e-4;
   gram.diagonal().array() += 1e-9;
@@ -128,10 +128,10 @@ EffectList refit(const MeasuredJob& job, EffectList model, const std::vector<Fre
     for (const double damping : {1.0, 0.5, 0.2}) {
       EffectList next = model;
       for (std::size_t n = 0; n < numbers.size(); ++n) {
-        constexpr double kMostSteps = 60;
+        constexpr double kMaxSteps = 60;
         number_of(next, numbers[n]) +=
             numbers[n].step *
-            std::clamp(damping * move[static_cast<Eigen::Index>(n)], -kMostSteps, kMostSteps);
+            std::clamp(damping * move[static_cast<Eigen::Index>(n)], -kMaxSteps, kMaxSteps);
       }
       if (!valid(next)) continue;
       const double after = wrong_share(job, next, layers);

@@ -41,7 +41,7 @@ class Trials {
   void try_orders(const std::vector<OrderTrial>& orders) {
     printed_ = print_layers(job_, model_, LayerChoice(job_.masks.size(), true));
     std::map<int, WrongCounts> wrong;
-    for (int by = -kMostMovedLayers; by <= kMostMovedLayers; ++by) {
+    for (int by = -kMaxMovedLayers; by <= kMaxMovedLayers; ++by) {
       std::vector<Shared<RunLayer>> moved(printed_.size());
       for (int k = 0; k < job_.layers(); ++k) {
         const auto here = static_cast<std::size_t>(k);
@@ -60,7 +60,7 @@ class Trials {
       for (int k = 0; k < job_.layers(); ++k) {
         const auto here = static_cast<std::size_t>(k);
         const int by = order.by(job_.first_layer + k);
-        after[here] = wrong[std::clamp(by, -kMostMovedLayers, kMostMovedLayers)][here];
+        after[here] = wrong[std::clamp(by, -kMaxMovedLayers, kMaxMovedLayers)][here];
       }
       out_.push_back({order.effect, order.covariate, kAlongZ, gains(before_, after)});
     }

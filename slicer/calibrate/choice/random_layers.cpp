@@ -10,7 +10,7 @@ namespace binderjet {
 namespace {
 
 // More layers make the equations too many, and the finding no surer.
-constexpr int kMostLayers = 100;
+constexpr int kMaxLayers = 100;
 
 // How much the shift of a layer says of the next one's: 0 for random ones, 1 for a trend, -1 where
 // even and odd layers are apart.
@@ -32,7 +32,7 @@ std::optional<RandomLayers> find_random_layers(const MeasuredJob& job, const Eff
   std::vector<char> has_points(job.masks.size(), 0);
   for (const SurfacePoint& point : points) has_points[static_cast<std::size_t>(point.layer)] = 1;
   Candidate candidate{.along = kAlongZ, .effect = model.size()};
-  for (int k = 0; k < std::min(job.layers(), kMostLayers); ++k) {
+  for (int k = 0; k < std::min(job.layers(), kMaxLayers); ++k) {
     if (has_points[static_cast<std::size_t>(k)] == 0) continue;
     const int layer = job.first_layer + k;
     const auto here = [layer](const Spot& spot) { return spot.layer == layer ? 1.0 : 0.0; };

@@ -262,7 +262,7 @@ LengthFindings trace_lengths(const GaugeTable& table, const LengthRules& rules) 
   if (several_readings && batches_of(blocks).size() > 1) {
     terms.push_back(reading_term(readings, axes, first_reading, true));
   }
-  found.ladder = climb(readings.error, readings.part, terms, rules.least_gain);
+  found.ladder = climb(readings.error, readings.part, terms, rules.min_gain);
   found.floor_rms = spread_of_readings(readings);
   const VectorXd& after = found.ladder.heldout;
   found.profiles.push_back(profile("axis", readings, after, axis_label));

@@ -28,7 +28,7 @@ struct LengthRules {
   // parts is below 1.5 mm (literature: 0.2 to 0.6 mm per face). Its row is dropped; a batch with
   // more than half of its rows dropped is dropped whole.
   double drop_mm = 3;
-  double least_gain = 0.005;  // of the squared error; a term that brings less is not worth having
+  double min_gain = 0.005;  // of the squared error; a term that brings less is not worth having
 };
 
 // A part's growth in a batch told as an offset and as a scale, both held out by part, rms in mm.

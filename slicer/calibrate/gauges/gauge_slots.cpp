@@ -49,7 +49,7 @@ Misfit misfit(const std::vector<GaugeReading>& readings, const std::vector<doubl
 }
 
 // The place of the least value; a grid prints many values alike, and of those it is the middle one.
-std::size_t least_of(const std::vector<double>& values) {
+std::size_t min_of(const std::vector<double>& values) {
   const double least = *std::min_element(values.begin(), values.end());
   std::vector<std::size_t> places;
   for (std::size_t i = 0; i < values.size(); ++i) {
@@ -71,7 +71,7 @@ double heldout_rms(const std::vector<GaugeReading>& readings,
         misfits.back() += i == left_out ? 0 : off * off;
       }
     }
-    const double error = readings[left_out].measured_mm - predicted[least_of(misfits)][left_out];
+    const double error = readings[left_out].measured_mm - predicted[min_of(misfits)][left_out];
     squares += error * error;
   }
   return std::sqrt(squares / static_cast<double>(readings.size()));
@@ -87,7 +87,7 @@ Explanation explain(const GaugeChange& change, const Grid& grid,
   for (const std::vector<double>& one : predicted) misfits.push_back(misfit(readings, one));
   std::vector<double> squares;
   for (const Misfit& one : misfits) squares.push_back(one.squares);
-  const auto best = misfits.begin() + static_cast<std::ptrdiff_t>(least_of(squares));
+  const auto best = misfits.begin() + static_cast<std::ptrdiff_t>(min_of(squares));
   Explanation out;
   out.kind = change.kind;
   out.value = change.values[static_cast<std::size_t>(best - misfits.begin())];

@@ -125,13 +125,13 @@ GaugePrint print_gauge(const PrinterModel& model, const Grid& grid, GaugeKind ki
 }
 
 double visible_from_mm(const PrinterModel& model, const Grid& grid, GaugeKind kind, int axis,
-                       double most_mm) {
+                       double max_mm) {
   const auto shows = [&](double width) {
     return print_gauge(model, grid, kind, axis, width).visible_share >= 0.5;
   };
-  if (!shows(most_mm)) return most_mm;
+  if (!shows(max_mm)) return max_mm;
   double hidden = 0;
-  double visible = most_mm;
+  double visible = max_mm;
   const double close_enough = grid.pitch_mm[static_cast<std::size_t>(axis)] / 64;
   while (visible - hidden > close_enough) {
     const double middle = (hidden + visible) / 2;

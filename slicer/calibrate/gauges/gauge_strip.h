@@ -26,8 +26,8 @@ GaugePrint print_gauge(const PrinterModel& model, const Grid& grid, GaugeKind ki
                        double width_mm);
 
 // The width (mm) from which on the gauge shows at half of all places or more, to 1/64 of a pixel
-// (layer) or better; `most_mm` if it shows at none up to there.
+// (layer) or better; `max_mm` if it shows at none up to there.
 double visible_from_mm(const PrinterModel& model, const Grid& grid, GaugeKind kind, int axis,
-                       double most_mm);
+                       double max_mm);
 
 }  // namespace binderjet

@@ -123,7 +123,7 @@ VectorXd leave_group_out(const MatrixXd& design, const VectorXd& readings,
 }
 
 Ladder climb(const VectorXd& readings, std::span<const int> groups, std::span<const Term> terms,
-             double least_gain) {
+             double min_gain) {
   Ladder ladder;
   ladder.rms_without = rms(readings);
   ladder.median_without = median_absolute(readings);
@@ -142,7 +142,7 @@ Ladder climb(const VectorXd& readings, std::span<const int> groups, std::span<co
     rung.rms = rms(errors);
     rung.median = median_absolute(errors);
     judge(rung, ladder.heldout, errors, groups);
-    rung.accepted = rung.t >= 2 && rung.gain >= least_gain;
+    rung.accepted = rung.t >= 2 && rung.gain >= min_gain;
     if (rung.accepted) {
       if (term.replaces) ladder.columns.clear();
       for (const std::string& name : term.forms[best].names) {

@@ -59,9 +59,9 @@ struct Ladder {
 };
 
 // Terms are taken in order; one stays if the gain over what is in has t >= 2 over the groups and is
-// at least `least_gain` of the squared error (a practical floor fixed beforehand).
+// at least `min_gain` of the squared error (a practical floor fixed beforehand).
 Ladder climb(const Eigen::VectorXd& readings, std::span<const int> groups,
-             std::span<const Term> terms, double least_gain);
+             std::span<const Term> terms, double min_gain);
 
 // reading - prediction, each group predicted from the others. Columns that the others do not
 // determine count as nothing (least norm).

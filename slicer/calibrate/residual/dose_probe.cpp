@@ -38,7 +38,7 @@ DoseProbe::DoseProbe(AssembledModel form, const Grid& grid, const JobPlace& plac
   const Reach reach = form_.reach(grid);
   window_reach_ = std::max(reach.layers_below, reach.layers_above);
   for (const MaskShift& shift : form_.placed.shifts) {
-    most_shift_vx_ += pixels_for(shift.most_mm, grid.voxel_mm(1));
+    max_shift_vx_ += pixels_for(shift.max_mm, grid.voxel_mm(1));
   }
   for (const DoseTerm& term : form_.terms) {
     terms_.push_back(
@@ -50,8 +50,8 @@ double DoseProbe::term_dose(const Term& term, const RunLayer& mask, int layer,
                             DosePlace place) const {
   const auto [rx, ry, rz] = grid_.detail_vx;
   const bool shifted = !form_.placed.shifts.empty();
-  const int low = static_cast<int>(std::floor(place.y_vx)) - term.y_last - most_shift_vx_ - 1;
-  const int high = static_cast<int>(std::ceil(place.y_vx)) - term.y_first + most_shift_vx_ + 1;
+  const int low = static_cast<int>(std::floor(place.y_vx)) - term.y_last - max_shift_vx_ - 1;
+  const int high = static_cast<int>(std::ceil(place.y_vx)) - term.y_first + max_shift_vx_ + 1;
   const int last = std::min(mask.height() - 1, high / ry);
   double dose = 0;
   for (int row = std::max(0, low / ry); row <= last; ++row) {

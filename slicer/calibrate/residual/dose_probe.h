@@ -50,7 +50,7 @@ class DoseProbe {
   Grid grid_;
   JobPlace place_;
   int window_reach_;
-  int most_shift_vx_ = 0;  // along y
+  int max_shift_vx_ = 0;  // along y
   std::vector<Term> terms_;
 };
 

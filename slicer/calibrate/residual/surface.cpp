@@ -143,7 +143,7 @@ std::vector<Shared<RunLayer>> print_layers(const MeasuredJob& job,
 
 std::vector<SurfacePoint> surface_points(const MeasuredJob& job,
                                          const std::vector<EffectSpec>& model,
-                                         const LayerChoice& layers, int most_points,
+                                         const LayerChoice& layers, int max_points,
                                          double reach_mm) {
   const auto printed = print_layers(job, model, layers);
   std::int64_t edges = 0;
@@ -151,7 +151,7 @@ std::vector<SurfacePoint> surface_points(const MeasuredJob& job,
     // About as many edges lie along y as the flips along x say.
     if (layer != nullptr) edges += 2 * static_cast<std::int64_t>(layer->flip_count());
   }
-  const double keep = std::min(1.0, most_points / std::max(1.0, static_cast<double>(edges)));
+  const double keep = std::min(1.0, max_points / std::max(1.0, static_cast<double>(edges)));
   const auto keep_below = static_cast<std::uint32_t>(keep * 4294967295.0);
   const std::array<int, 2> reach_vx{pixels_for(reach_mm, job.grid.voxel_mm(0)),
                                     pixels_for(reach_mm, job.grid.voxel_mm(1))};

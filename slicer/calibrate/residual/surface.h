@@ -60,11 +60,11 @@ std::vector<Shared<RunLayer>> worn_layers(const MeasuredJob& job, const PrinterM
                                           const std::vector<Shared<RunLayer>>& bound,
                                           const LayerChoice& layers);
 
-// At most about `most_points` edges, picked evenly by a hash of their place, so that the same job
+// At most about `max_points` edges, picked evenly by a hash of their place, so that the same job
 // gives the same points. Edges without a measured partner within `reach_mm` are left out.
 std::vector<SurfacePoint> surface_points(const MeasuredJob& job,
                                          const std::vector<EffectSpec>& model,
-                                         const LayerChoice& layers, int most_points,
+                                         const LayerChoice& layers, int max_points,
                                          double reach_mm);
 
 // Dose minus level of a model at each point's model edge, moved by `offset_vx` of (x, y) voxels.

@@ -15,7 +15,7 @@
 namespace binderjet {
 namespace {
 
-constexpr double kMostNoise = 0.1;  // of the contrast; half way is then five deviations off
+constexpr double kMaxNoise = 0.1;  // of the contrast; half way is then five deviations off
 
 // How a scan whose samples are whole voxels lies on the frame.
 struct OnGrid {
@@ -209,12 +209,12 @@ Measured read_measured(const std::string& folder, const StackInfo& frame,
   measured.registration = register_scan(scan, predicted, frame, folder);
   const Pose& pose = measured.registration->pose;
   // White noise falls by 2 sqrt(pi) deviations of the blur, in samples.
-  const double blur_mm = measured.grays.noise / kMostNoise / (2 * std::sqrt(std::numbers::pi)) *
+  const double blur_mm = measured.grays.noise / kMaxNoise / (2 * std::sqrt(std::numbers::pi)) *
                          reader.info().pitch_mm[0];
   for_layers([&](int k) {
     const double low = frame.origin_mm[2] + k * frame.pitch_mm[2] + pose.shift_mm[2];
     const GrayPlane plane = scan.mean(low, low + frame.pitch_mm[2]);
-    const bool noisy = measured.grays.noise > kMostNoise;
+    const bool noisy = measured.grays.noise > kMaxNoise;
     return resampled(noisy ? blurred(plane, blur_mm) : plane, pose, frame);
   });
   return measured;

@@ -15,7 +15,7 @@ namespace binderjet {
 namespace {
 
 constexpr double kRadian = std::numbers::pi / 180;
-constexpr int kMostLayers = 24;  // enough edges, and the time does not grow with the part's height
+constexpr int kMaxLayers = 24;  // enough edges, and the time does not grow with the part's height
 
 // One round of Gauss-Newton: images blurred to `sigma_mm`, and how large a difference still counts.
 struct Round {
@@ -92,10 +92,10 @@ struct Problem {
     for (int k = 0; k < static_cast<int>(predicted.size()); ++k) {
       if (!predicted[static_cast<std::size_t>(k)].empty()) solid.push_back(k);
     }
-    if (solid.size() <= kMostLayers) return solid;
+    if (solid.size() <= kMaxLayers) return solid;
     std::vector<int> some;
-    for (std::size_t i = 0; i < kMostLayers; ++i) {
-      some.push_back(solid[i * (solid.size() - 1) / (kMostLayers - 1)]);
+    for (std::size_t i = 0; i < kMaxLayers; ++i) {
+      some.push_back(solid[i * (solid.size() - 1) / (kMaxLayers - 1)]);
     }
     return some;
   }
@@ -160,10 +160,10 @@ double mean_square(const std::vector<Pair>& pairs, const Parameters& at,
 // the prediction along e; so one linear system in e per step. Growth is solved anew in each.
 Fit gauss_newton(const std::vector<Pair>& pairs, Parameters at, std::array<double, 2> center,
                  double cutoff) {
-  constexpr int kMostSteps = 30;
+  constexpr int kMaxSteps = 30;
   constexpr double kStill = 1e-5;  // mm at 1 mm, radians, shares
   using Square = Eigen::Matrix<double, 7, 7>;
-  for (int step = 0; step < kMostSteps; ++step) {
+  for (int step = 0; step < kMaxSteps; ++step) {
     std::vector<Square> lefts(pairs.size(), Square::Zero());
     std::vector<Parameters> rights(pairs.size(), Parameters::Zero());
     oneapi::tbb::parallel_for(std::size_t{0}, pairs.size(), [&](std::size_t i) {

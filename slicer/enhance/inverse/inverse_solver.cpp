@@ -79,8 +79,8 @@ InverseLayer InverseSolver::settle(LayerWindow layers) const {
 Shared<RunLayer> InverseSolver::without_spurious(LayerWindow layers) const {
   const InverseLayer& layer = *layer_at(layers, 0);
   Shared<RunLayer> mask = layer.mask;
-  constexpr int kMostPx = 32;
-  for (int around_px = 2; around_px <= kMostPx; around_px *= 2) {
+  constexpr int kMaxPx = 32;
+  for (int around_px = 2; around_px <= kMaxPx; around_px *= 2) {
     const RunLayer spurious =
         spurious_print(*layer.target, print_with(layers, 0, search_.printer, *mask));
     if (spurious.count() == 0) break;

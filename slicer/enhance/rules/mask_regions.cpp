@@ -19,15 +19,15 @@ std::vector<Region> regions_of(const RunLayer& layer) {
 }  // namespace
 
 MaskRegions& MaskRegions::operator+=(const MaskRegions& other) {
-  least_island_px = std::min(least_island_px, other.least_island_px);
-  least_hole_px = std::min(least_hole_px, other.least_hole_px);
+  smallest_island_px = std::min(smallest_island_px, other.smallest_island_px);
+  smallest_hole_px = std::min(smallest_hole_px, other.smallest_hole_px);
   return *this;
 }
 
 MaskRegions mask_regions(const RunLayer& mask) {
   MaskRegions out;
   for (const Region& island : regions_of(mask)) {
-    out.least_island_px = std::min(out.least_island_px, island.voxels);
+    out.smallest_island_px = std::min(out.smallest_island_px, island.voxels);
   }
   RunLayer powder(mask.width());
   std::vector<int> row;
@@ -39,7 +39,7 @@ MaskRegions mask_regions(const RunLayer& mask) {
   for (const Region& hole : regions_of(powder)) {
     const bool inside = hole.low[0] > 0 && hole.low[1] > 0 && hole.high[0] < mask.width() &&
                         hole.high[1] < mask.height();
-    if (inside) out.least_hole_px = std::min(out.least_hole_px, hole.voxels);
+    if (inside) out.smallest_hole_px = std::min(out.smallest_hole_px, hole.voxels);
   }
   return out;
 }

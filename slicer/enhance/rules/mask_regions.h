@@ -13,8 +13,8 @@ namespace binderjet {
 // In pixels that meet at their sides; the largest number where there are none. The powder around
 // the mask is no hole.
 struct MaskRegions {
-  std::int64_t least_island_px = std::numeric_limits<std::int64_t>::max();
-  std::int64_t least_hole_px = std::numeric_limits<std::int64_t>::max();
+  std::int64_t smallest_island_px = std::numeric_limits<std::int64_t>::max();
+  std::int64_t smallest_hole_px = std::numeric_limits<std::int64_t>::max();
 
   MaskRegions& operator+=(const MaskRegions& other);
 };

@@ -229,7 +229,7 @@ BoxWeights box_weights(double width_vx) {
   return weights;
 }
 
-std::int64_t least_sum(const BoxWeights& x, const BoxWeights& y, double level) {
+std::int64_t min_sum(const BoxWeights& x, const BoxWeights& y, double level) {
   // A product that is whole but for rounding is that number: an exact tie counts as printed.
   constexpr double kRounding = 1e-12;
   const double sum = level * static_cast<double>(x.total()) * static_cast<double>(y.total());

@@ -46,6 +46,6 @@ RunLayer box_threshold(const RunLayer& in, std::array<int, 2> repeat, const BoxW
                        const BoxWeights& y, std::int64_t least);
 
 // The least weighted sum that is a dose of at least `level` (0 < level <= 1).
-std::int64_t least_sum(const BoxWeights& x, const BoxWeights& y, double level);
+std::int64_t min_sum(const BoxWeights& x, const BoxWeights& y, double level);
 
 }  // namespace binderjet

@@ -42,7 +42,7 @@ std::int64_t part_of(std::int64_t weight, double share) {
 }
 
 // Adds the flips of a mask for voxel row `y` of the result.
-void add_ramps(const RunLayer& mask, int y, std::array<int, 2> repeat, const PlacedDose& placed,
+void add_ramps(const RunLayer& mask, int y, std::array<int, 2> repeat, const BedDependence& placed,
                const Kernel& along_y, std::int64_t scale, std::size_t kernel,
                std::vector<Ramp>& ramps) {
   const int first = std::max(0, y - along_y.last());
@@ -66,14 +66,14 @@ void add_ramps(const RunLayer& mask, int y, std::array<int, 2> repeat, const Pla
 // The same as add_ramps() for a mask that is shifted; every weight is kFine * kFine times as large.
 class ShiftedRamps {
  public:
-  ShiftedRamps(const Grid& grid, const JobPlace& place, const PlacedDose& placed)
+  ShiftedRamps(const Grid& grid, const JobPlace& place, const BedDependence& placed)
       : grid_(grid), place_(place), placed_(placed) {}
 
   void add(const RunLayer& mask, int y, int layer, const Kernel& along_y, std::int64_t scale,
            std::size_t kernel, std::vector<Ramp>& ramps) const {
     const ShiftedMask shifted(grid_, place_, placed_, mask.width(), layer);
     const int ry = grid_.detail_vx[1];
-    const int most = placed_.most_shift_vx(grid_, 1) + 1;
+    const int most = placed_.max_shift_vx(grid_, 1) + 1;
     const int first = std::max(0, (y - along_y.last() - most) / ry - 1);
     const int last = std::min(mask.height() - 1, (y - along_y.first + most) / ry);
     for (int row = first; row <= last; ++row) {
@@ -104,13 +104,13 @@ class ShiftedRamps {
  private:
   const Grid& grid_;
   const JobPlace& place_;
-  const PlacedDose& placed_;
+  const BedDependence& placed_;
 };
 
 // By what the dose of a row's voxels is multiplied.
 class RowGain {
  public:
-  RowGain(const Grid& grid, const JobPlace& place, const PlacedDose& placed, int layer,
+  RowGain(const Grid& grid, const JobPlace& place, const BedDependence& placed, int layer,
           const DensityField* density)
       : grid_(grid), place_(place), placed_(placed), layer_(layer), density_(density) {
     for (const DoseGain& gain : placed.gains) {
@@ -129,7 +129,7 @@ class RowGain {
  private:
   const Grid& grid_;
   const JobPlace& place_;
-  const PlacedDose& placed_;
+  const BedDependence& placed_;
   int layer_;
   const DensityField* density_;
   int y_ = 0;
@@ -222,7 +222,7 @@ class RowBuilder {
 }  // namespace
 
 DoseFilter::DoseFilter(std::span<const DoseTerm> terms, double level, const Grid& grid,
-                       const PlacedDose& placed, const JobPlace& place)
+                       const BedDependence& placed, const JobPlace& place)
     : grid_(grid), placed_(placed), place_(place), repeat_{grid.detail_vx[0], grid.detail_vx[1]} {
   const auto total = [](const DoseTerm& term) {
     return static_cast<double>(term.x.total()) * static_cast<double>(term.y.total());

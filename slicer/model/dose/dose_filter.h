@@ -19,8 +19,8 @@
 
 #include "slicer/layers/run_layer.h"
 #include "slicer/layers/window.h"
+#include "slicer/model/dose/bed_dependence.h"
 #include "slicer/model/dose/kernel.h"
-#include "slicer/model/dose/placed_dose.h"
 
 namespace binderjet {
 
@@ -39,7 +39,7 @@ class DoseFilter {
   // The first term is exact; gains of the others relative to it are rounded to 2^-20 or, where the
   // sums need the room, a little coarser. Every mask pixel is repeat[0] x repeat[1] voxels.
   DoseFilter(std::span<const DoseTerm> terms, double level, const Grid& grid,
-             const PlacedDose& placed = {}, const JobPlace& place = {});
+             const BedDependence& placed = {}, const JobPlace& place = {});
 
   // `window` is the masks around the layer, at least as far as the terms reach; the middle one must
   // be there. Shifted flips are placed to 1/16 voxel.
@@ -55,7 +55,7 @@ class DoseFilter {
   };
 
   Grid grid_;
-  PlacedDose placed_;
+  BedDependence placed_;
   JobPlace place_;
   std::array<int, 2> repeat_;
   std::vector<Kernel> x_;  // the different kernels along x

@@ -9,7 +9,7 @@
 #include <cmath>
 
 #include "slicer/layers/grid.h"
-#include "slicer/model/dose/placed_dose.h"
+#include "slicer/model/dose/bed_dependence.h"
 
 namespace binderjet {
 
@@ -28,7 +28,7 @@ inline FineLength split_fine(int fine) {
 // The mask of one layer of a job.
 class ShiftedMask {
  public:
-  ShiftedMask(const Grid& grid, const JobPlace& place, const PlacedDose& placed, int width_px,
+  ShiftedMask(const Grid& grid, const JobPlace& place, const BedDependence& placed, int width_px,
               int layer)
       : grid_(grid), place_(place), placed_(placed), width_px_(width_px), layer_(layer) {}
 
@@ -54,7 +54,7 @@ class ShiftedMask {
 
   const Grid& grid_;
   const JobPlace& place_;
-  const PlacedDose& placed_;
+  const BedDependence& placed_;
   int width_px_;
   int layer_;
 };

@@ -20,8 +20,8 @@ void AssembledModel::bind_at(double new_level) {
 }
 
 void AssembledModel::shift(std::function<std::array<double, 2>(const Spot&)> by_mm,
-                           const std::array<double, 2>& most_mm) {
-  placed.shifts.push_back({std::move(by_mm), std::max(std::abs(most_mm[0]), std::abs(most_mm[1]))});
+                           const std::array<double, 2>& max_mm) {
+  placed.shifts.push_back({std::move(by_mm), std::max(std::abs(max_mm[0]), std::abs(max_mm[1]))});
 }
 
 void AssembledModel::wear_first(Wear step) {
@@ -47,7 +47,7 @@ Reach AssembledModel::reach(const Grid& grid) const {
     reach.layers_above = std::max(reach.layers_above, term.layer);
   }
   for (int axis = 0; axis < 2 && !placed.shifts.empty(); ++axis) {
-    reach.xy_vx[static_cast<std::size_t>(axis)] += placed.most_shift_vx(grid, axis);
+    reach.xy_vx[static_cast<std::size_t>(axis)] += placed.max_shift_vx(grid, axis);
   }
   reach.layers_below = std::max(reach.layers_below, placed.density_layers(grid));
   reach.layers_above = std::max(reach.layers_above, placed.density_layers(grid));

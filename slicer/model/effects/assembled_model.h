@@ -10,8 +10,8 @@
 #include "slicer/layers/grid.h"
 #include "slicer/layers/run_layer.h"
 #include "slicer/layers/window.h"
+#include "slicer/model/dose/bed_dependence.h"
 #include "slicer/model/dose/dose_filter.h"
-#include "slicer/model/dose/placed_dose.h"
 #include "slicer/model/effects/effect.h"
 
 namespace binderjet {
@@ -40,12 +40,12 @@ struct AssembledModel {
   std::vector<Wear> wear;  // in the order in which the part suffers it
   std::vector<LayerMove> moves;
   // What depends on the place on the bed, in mm; `place` is where the job is on it.
-  PlacedDose placed;
+  BedDependence placed;
   JobPlace place;
 
-  // Shifts every mask by by_mm(spot); neither component is ever larger than that of `most_mm`.
+  // Shifts every mask by by_mm(spot); neither component is ever larger than that of `max_mm`.
   void shift(std::function<std::array<double, 2>(const Spot&)> by_mm,
-             const std::array<double, 2>& most_mm);
+             const std::array<double, 2>& max_mm);
   // Adds wear that comes before all that moves edges, whatever the order of the effects.
   void wear_first(Wear step);
   // Asks for Spot::density; Error{kBadInput} if another effect asks for another radius.

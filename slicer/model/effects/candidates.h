@@ -11,7 +11,7 @@
 #include <utility>
 #include <vector>
 
-#include "slicer/model/dose/placed_dose.h"
+#include "slicer/model/dose/bed_dependence.h"
 #include "slicer/model/effects/covariate.h"
 #include "slicer/model/effects/effect.h"
 #include "slicer/model/effects/job_extent.h"
@@ -100,8 +100,8 @@ class CandidateList {
 std::vector<Candidate> all_candidates(const JobExtent& job, const EffectList& model);
 
 // Layer k of the print is what the model makes of layer k + by(k): all of these need no more prints
-// than the layers' own, moved by at most kMostMovedLayers.
-constexpr int kMostMovedLayers = 3;
+// than the layers' own, moved by at most kMaxMovedLayers.
+constexpr int kMaxMovedLayers = 3;
 struct OrderTrial {
   EffectSpec effect;
   Covariate covariate;

@@ -124,15 +124,15 @@ void write_into(const EffectSpec& spec, const Grid&, AssembledModel& form) {
     return;
   }
   const std::size_t axis = acts == "shift_x" ? 0 : 1;
-  std::array<double, 2> most_mm{};
-  most_mm[axis] = most;
+  std::array<double, 2> max_mm{};
+  max_mm[axis] = most;
   form.shift(
       [place, of = of, axis](const Spot& spot) {
         std::array<double, 2> by{};
         by[axis] = of(place(spot));
         return by;
       },
-      most_mm);
+      max_mm);
 }
 
 // Which layers a pulse is in is found by the scan: between two of them there is nothing to fit.

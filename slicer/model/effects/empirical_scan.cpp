@@ -106,9 +106,9 @@ class Scan {
 
   // One layer of every so many is another: a refill, a cleaning. No few waves add up to that.
   void add_pulses(Basis acts) {
-    constexpr int kMostLayers = 12;
+    constexpr int kMaxLayers = 12;
     constexpr int kFewest = 3;  // twice could be two windows
-    for (int period = 3; period <= std::min(kMostLayers, job_.layers / kFewest); ++period) {
+    for (int period = 3; period <= std::min(kMaxLayers, job_.layers / kFewest); ++period) {
       for (int at = 0; at < period; ++at) {
         add(acts,
             {Axis::kLayer, Form::kPeriodic, {{"period_layers", {static_cast<double>(period)}}}},
@@ -171,10 +171,10 @@ class Scan {
     constexpr double kShortestMm = 1.8;
     const double step_x = 1 / (2 * job_.place.size_mm[0]);
     const double step_y = 1 / (2 * job_.place.size_mm[1]);
-    const int most_x = static_cast<int>(1 / kShortestMm / step_x);
-    const int most_y = static_cast<int>(1 / kShortestMm / step_y);
-    for (int j = 1; j <= most_y; ++j) {
-      for (int i = -most_x; i <= most_x; ++i) {
+    const int max_x = static_cast<int>(1 / kShortestMm / step_x);
+    const int max_y = static_cast<int>(1 / kShortestMm / step_y);
+    for (int j = 1; j <= max_y; ++j) {
+      for (int i = -max_x; i <= max_x; ++i) {
         const double fx = i * step_x;
         const double fy = j * step_y;
         const double f = std::hypot(fx, fy);

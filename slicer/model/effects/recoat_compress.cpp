@@ -2,7 +2,7 @@
 // Compression: the roller presses the layers below it, so the print is lower than it was sent.
 //
 //   share: of the height, above -0.2, at most 0.2; negative: the print is higher. No layer is moved
-//   by more than kMostLayers.
+//   by more than kMaxLayers.
 #include <algorithm>
 #include <cmath>
 
@@ -12,8 +12,8 @@
 namespace binderjet {
 namespace {
 
-constexpr int kMostLayers = 8;  // what a stream holds of the job on each side
-constexpr double kMostShare = 0.2;
+constexpr int kMaxLayers = 8;  // what a stream holds of the job on each side
+constexpr double kMaxShare = 0.2;
 
 void write_into(const EffectSpec& spec, const Grid&, AssembledModel& form) {
   const double share = spec.number("share");
@@ -22,9 +22,9 @@ void write_into(const EffectSpec& spec, const Grid&, AssembledModel& form) {
   form.moves.push_back({[lower](int layer) {
                           const int by =
                               static_cast<int>(std::floor((layer + 0.5) * (1 + lower))) - layer;
-                          return std::clamp(by, -kMostLayers, kMostLayers);
+                          return std::clamp(by, -kMaxLayers, kMaxLayers);
                         },
-                        kMostLayers});
+                        kMaxLayers});
 }
 
 EffectSpec effect(double share) { return {"recoat_compress", {}, {{"share", {share}}}}; }
@@ -32,9 +32,9 @@ EffectSpec effect(double share) { return {"recoat_compress", {}, {{"share", {sha
 // Shares that move the top by half a layer more each.
 void add_trials(TrialList& list) {
   const int top = list.job.first_layer + list.job.layers;
-  for (int halves = -2 * kMostMovedLayers; halves <= 2 * kMostMovedLayers; ++halves) {
+  for (int halves = -2 * kMaxMovedLayers; halves <= 2 * kMaxMovedLayers; ++halves) {
     const double share = halves / 2.0 / top;
-    if (halves == 0 || std::abs(share) > kMostShare) continue;
+    if (halves == 0 || std::abs(share) > kMaxShare) continue;
     list.orders.push_back(
         {effect(share), {Covariate::Axis::kZ, Covariate::Form::kTrend}, [share](int layer) {
            return static_cast<int>(std::floor((layer + 0.5) / (1 - share))) - layer;
@@ -45,13 +45,13 @@ void add_trials(TrialList& list) {
 }  // namespace
 
 EffectKind recoat_compress_effect() {
-  return {.name = "recoat_compress",
-          .numbers =
-              {{.name = "share", .min = -kMostShare, .max = kMostShare, .search_step = one_tenth}},
-          .write_into = write_into,
-          .examples = {effect(0.15)},
-          .once = true,
-          .add_trials = add_trials};
+  return {
+      .name = "recoat_compress",
+      .numbers = {{.name = "share", .min = -kMaxShare, .max = kMaxShare, .search_step = one_tenth}},
+      .write_into = write_into,
+      .examples = {effect(0.15)},
+      .once = true,
+      .add_trials = add_trials};
 }
 
 }  // namespace binderjet

@@ -12,7 +12,7 @@
 namespace binderjet {
 namespace {
 
-constexpr int kMostLayers = 8;  // what a stream holds of the job on each side
+constexpr int kMaxLayers = 8;  // what a stream holds of the job on each side
 
 void write_into(const EffectSpec& spec, const Grid& grid, AssembledModel& form) {
   const int from = static_cast<int>(std::lround(spec.number("at_mm") / grid.pitch_mm[2]));
@@ -42,7 +42,7 @@ void add_trials(TrialList& list) {
 EffectKind slice_dropout_effect() {
   return {.name = "slice_dropout",
           .numbers = {{.name = "at_mm", .min = -1e-9, .max = 1000, .search_step = one_layer},
-                      {.name = "layers", .min = -kMostLayers - 1e-9, .max = kMostLayers}},
+                      {.name = "layers", .min = -kMaxLayers - 1e-9, .max = kMaxLayers}},
           .write_into = write_into,
           .examples = {effect(0.2, 1)},
           .add_trials = add_trials};

@@ -17,7 +17,7 @@
 namespace binderjet {
 namespace {
 
-constexpr double kMostMm = 10;
+constexpr double kMaxMm = 10;
 
 Kernel kernel(const EffectSpec& spec, const Grid& grid, int axis) {
   const double width_vx =
@@ -93,7 +93,7 @@ EffectKind spread_effect() {
           .numbers = {{.name = "width_mm",
                        .count = 2,
                        .min = 0,
-                       .max = kMostMm,
+                       .max = kMaxMm,
                        .drift_share = 0.1,
                        .fit_share = 0.02}},
           .write_into = write_into,

@@ -13,7 +13,7 @@
 namespace binderjet {
 namespace {
 
-constexpr double kMostMm = 10;
+constexpr double kMaxMm = 10;
 
 void write_into(const EffectSpec& spec, const Grid& grid, AssembledModel& form) {
   const std::array<int, 2> box{pixels_for(spec.number("width_mm", 0), grid.voxel_mm(0)),
@@ -32,14 +32,13 @@ void add_trials(TrialList& list) {
 }  // namespace
 
 EffectKind survive_effect() {
-  return {
-      .name = "survive",
-      .numbers =
-          {{.name = "width_mm", .count = 2, .min = 0, .max = kMostMm, .search_step = one_tenth}},
-      .write_into = write_into,
-      .examples = {{"survive", {}, {{"width_mm", {0.5, 0.35}}}}},
-      .once = true,
-      .add_trials = add_trials};
+  return {.name = "survive",
+          .numbers =
+              {{.name = "width_mm", .count = 2, .min = 0, .max = kMaxMm, .search_step = one_tenth}},
+          .write_into = write_into,
+          .examples = {{"survive", {}, {{"width_mm", {0.5, 0.35}}}}},
+          .once = true,
+          .add_trials = add_trials};
 }
 
 }  // namespace binderjet

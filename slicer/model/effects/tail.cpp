@@ -10,7 +10,7 @@
 namespace binderjet {
 namespace {
 
-constexpr double kMostMm = 2;
+constexpr double kMaxMm = 2;
 
 void write_into(const EffectSpec& spec, const Grid& grid, AssembledModel& form) {
   const double share = spec.number("share");
@@ -43,14 +43,13 @@ void add_candidates(CandidateList& list) {
 }  // namespace
 
 EffectKind tail_effect() {
-  return {
-      .name = "tail",
-      .numbers = {{.name = "share", .min = 0, .max = 0.9, .fit_step = 0.01},
-                  {.name = "width_mm", .count = 2, .min = 0, .max = kMostMm, .fit_share = 0.02}},
-      .write_into = write_into,
-      .examples = {{"tail", {}, {{"share", {0.3}}, {"width_mm", {0.8, 1.2}}}}},
-      .once = true,
-      .add_candidates = add_candidates};
+  return {.name = "tail",
+          .numbers = {{.name = "share", .min = 0, .max = 0.9, .fit_step = 0.01},
+                      {.name = "width_mm", .count = 2, .min = 0, .max = kMaxMm, .fit_share = 0.02}},
+          .write_into = write_into,
+          .examples = {{"tail", {}, {{"share", {0.3}}, {"width_mm", {0.8, 1.2}}}}},
+          .once = true,
+          .add_candidates = add_candidates};
 }
 
 }  // namespace binderjet

@@ -9,15 +9,15 @@ namespace binderjet {
 namespace {
 
 // Shares too small to move an edge by a hundredth of a kernel are left out.
-constexpr double kLeastShare = 0.01;
-constexpr int kMostLayers = 8;
+constexpr double kMinShare = 0.01;
+constexpr int kMaxLayers = 8;
 
 void write_into(const EffectSpec& spec, const Grid&, AssembledModel& form) {
   const std::vector<DoseTerm> own = form.terms;
   double share = 1;
-  for (int j = 1; j <= kMostLayers; ++j) {
+  for (int j = 1; j <= kMaxLayers; ++j) {
     share *= spec.number("share");
-    if (share < kLeastShare) break;
+    if (share < kMinShare) break;
     for (DoseTerm term : own) {
       term.layer += j;
       term.gain *= share;

@@ -194,9 +194,9 @@ int PrinterEmulator::sent_again() const {
   return sent_again_;
 }
 
-int PrinterEmulator::most_waiting() const {
+int PrinterEmulator::max_waiting() const {
   const std::lock_guard lock(mutex_);
-  return most_waiting_;
+  return max_waiting_;
 }
 
 int PrinterEmulator::resets() const {

@@ -244,7 +244,7 @@ void PrinterEmulator::take_layer(const Frame& frame) {
   }
   waiting_.push_back(
       {head->job, {frame.payload.begin() + protocol::kLayerHeadBytes, frame.payload.end()}});
-  most_waiting_ = std::max(most_waiting_, static_cast<int>(waiting_.size()));
+  max_waiting_ = std::max(max_waiting_, static_cast<int>(waiting_.size()));
 }
 
 void PrinterEmulator::take_end(const Frame& frame) {

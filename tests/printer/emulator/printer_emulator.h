@@ -70,7 +70,7 @@ class PrinterEmulator : public UsbDevice {
   int acknowledged() const;               // layers of the newest job
   std::vector<int> record() const;        // layers in the order they were acknowledged, newest job
   int sent_again() const;                 // layers that came once more behind their acknowledgement
-  int most_waiting() const;               // layers that were here and not printed, at most
+  int max_waiting() const;                // layers that were here and not printed, at most
   int resets() const;
   std::uint64_t bytes_taken() const;
 
@@ -119,7 +119,7 @@ class PrinterEmulator : public UsbDevice {
   std::vector<EmulatedJob> jobs_;  // the last may be unfinished
   std::map<std::uint64_t, std::vector<int>> record_;
   int sent_again_ = 0;
-  int most_waiting_ = 0;
+  int max_waiting_ = 0;
   int resets_ = 0;
   std::uint64_t bytes_taken_ = 0;
 

@@ -89,7 +89,7 @@ class PrinterTest : public testing::Test {
     std::iota(once.begin(), once.end(), 0);
     EXPECT_EQ(printer_.record(), once);
     EXPECT_EQ(printer_.sent_again(), 0);
-    EXPECT_LE(printer_.most_waiting(), 4);
+    EXPECT_LE(printer_.max_waiting(), 4);
   }
 
   TempFolder folder_;

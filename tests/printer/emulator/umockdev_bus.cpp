@@ -79,9 +79,9 @@ struct UmockdevBus::State {
   bool busy = false;
   bool usblp = false;
   bool detached = false;
-  std::size_t most_bytes = 0;
+  std::size_t max_bytes = 0;
   int empty_reaps = 0;
-  std::size_t most_in_flight = 0;
+  std::size_t max_in_flight = 0;
   std::thread pump;
 
   void set_nothing_to_reap() {
@@ -187,7 +187,7 @@ struct UmockdevBus::State {
     const auto length = static_cast<std::size_t>(urb->head().buffer_length);
     std::size_t bytes = length;
     for (const auto& one : pending) bytes += static_cast<std::size_t>(one->head().buffer_length);
-    if (most_bytes != 0 && bytes > most_bytes && urb->head().type == USBDEVFS_URB_TYPE_BULK) {
+    if (max_bytes != 0 && bytes > max_bytes && urb->head().type == USBDEVFS_URB_TYPE_BULK) {
       return -ENOMEM;
     }
     if (length > 0) {
@@ -196,7 +196,7 @@ struct UmockdevBus::State {
       if (urb->buffer == nullptr) return -EFAULT;
     }
     pending.push_back(std::move(urb));
-    most_in_flight = std::max(most_in_flight, pending.size());
+    max_in_flight = std::max(max_in_flight, pending.size());
     work.notify_all();
     return 0;
   }
@@ -395,7 +395,7 @@ void UmockdevBus::set_usblp(bool bound) {
 
 void UmockdevBus::set_no_memory(std::size_t most) {
   const std::lock_guard lock(state_->mutex);
-  state_->most_bytes = most;
+  state_->max_bytes = most;
 }
 
 bool UmockdevBus::usblp_detached() const {
@@ -408,9 +408,9 @@ int UmockdevBus::empty_reaps() const {
   return state_->empty_reaps;
 }
 
-std::size_t UmockdevBus::most_in_flight() const {
+std::size_t UmockdevBus::max_in_flight() const {
   const std::lock_guard lock(state_->mutex);
-  return state_->most_in_flight;
+  return state_->max_in_flight;
 }
 
 }  // namespace binderjet

@@ -33,7 +33,7 @@ class UmockdevBus {
   // which tells a poll from a wait.
   std::string node() const;
   int empty_reaps() const;
-  std::size_t most_in_flight() const;  // transfers
+  std::size_t max_in_flight() const;  // transfers
 
  private:
   struct State;

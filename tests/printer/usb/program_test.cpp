@@ -184,7 +184,7 @@ TEST_F(UsbProgram, StreamsAPartAsItIsSlicedAndResumesItWithoutAJobFile) {
   const Ended resumed = run({"resume", "2", "--to", "usb:"});
   EXPECT_EQ(resumed.status, 0) << resumed.err;
   expect_printed(folder_ / "whole.bjob");
-  EXPECT_LE(printer_.most_waiting(), 4);
+  EXPECT_LE(printer_.max_waiting(), 4);
 }
 
 TEST_F(UsbProgram, StreamsAPartIntoASpoolToo) {
@@ -316,11 +316,11 @@ TEST_F(UsbProgram, KeepsTheDataPipeFull) {
   const auto result = nlohmann::json::parse(printed.out);
   const double rate = result["bytes_sent"].get<double>() / result["seconds"].get<double>() / 1e6;
   std::printf("%.0f MB/s, %zu transfers in flight at most, CPU %.2f s\n", rate,
-              bus_.most_in_flight(), printed.cpu_s);
+              bus_.max_in_flight(), printed.cpu_s);
   // 53 MB/s were measured while two cores did the work of eight. This bound only catches a pipe
   // that runs dry between transfers.
   EXPECT_GT(rate, 5);
-  EXPECT_GE(bus_.most_in_flight(), 3U);
+  EXPECT_GE(bus_.max_in_flight(), 3U);
   expect_printed(path);
 }
 

@@ -106,7 +106,7 @@ TEST(DoseFilter, AgreesWithTheBoxFilterOnABox) {
   const RunWindow window{&mask};
   for (const double at : {0.1, 0.25, 0.5, 0.9, 1.0}) {
     EXPECT_EQ(DoseFilter({&term, 1}, at, {{0.2, 0.3, 0.1}, {2, 3, 1}})(window),
-              box_threshold(mask, {2, 3}, x, y, least_sum(x, y, at)));
+              box_threshold(mask, {2, 3}, x, y, min_sum(x, y, at)));
   }
 }
 

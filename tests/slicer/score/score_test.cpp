@@ -54,7 +54,7 @@ TEST(EdgeErrors, AreThoseOfASearchThroughAllEdges) {
     for (int z = 0; z < target.nz; ++z) {
       const auto there = sides(printed, z / rz, grid.voxel_mm(0), grid.voxel_mm(1));
       for (const Side& edge : sides(target, z, grid.voxel_mm(0), grid.voxel_mm(1))) {
-        double nearest = EdgeErrors::kMostMm;
+        double nearest = EdgeErrors::kMaxMm;
         for (const Side& other : there) nearest = std::min(nearest, distance(edge, other));
         sum += nearest;
         most = std::max(most, nearest);
@@ -91,7 +91,7 @@ TEST(EdgeErrors, OfWhatIsNotPrintedAreTheMostThatIsSearched) {
   target.set(2, 2, 0, true);
   const EdgeErrors errors = whole::score(target, Volume(5, 5, 1), grid).score.edges;
   EXPECT_EQ(errors.edges(), 4);
-  EXPECT_DOUBLE_EQ(errors.mean_mm(), EdgeErrors::kMostMm);
+  EXPECT_DOUBLE_EQ(errors.mean_mm(), EdgeErrors::kMaxMm);
 }
 
 // Regions by flooding a whole volume, each as the set of its voxels.

@@ -17,7 +17,7 @@ constexpr int kAroundLayers = 3;
 // What is seen around a patch and what it changes, in pixels and in layers: wear, and neighbors.
 constexpr int kBeside = 4;
 // Noise has no end of faults; only so many of a stretch, the largest, are worth the time.
-constexpr std::size_t kMostFaults = 64;
+constexpr std::size_t kMaxFaults = 64;
 
 // From near to far. Only layers of `own` change, only layers of `seen` are copied.
 std::vector<Patch> patches(LayerRange fault, const Rect& pixels, LayerRange own, LayerRange seen) {
@@ -54,7 +54,7 @@ class Mending {
     std::stable_sort(faults.begin(), faults.end(), [](const Fault& a, const Fault& b) {
       return a.region.voxels > b.region.voxels;
     });
-    if (faults.size() > kMostFaults) faults.resize(kMostFaults);
+    if (faults.size() > kMaxFaults) faults.resize(kMaxFaults);
     for (const Fault& fault : faults) mend(fault.region);
     const Stretch::Layers& layers = all_.layers();
     return {layers.begin() + own_.first, layers.begin() + own_.last};

@@ -96,11 +96,11 @@ void Stretch::look_at(Layers& layers, int k) const {
   layers[at(k)] = std::make_shared<const PrintedLayer>(with_missing(*by_, three));
 }
 
-std::int64_t Stretch::most_wrong(int k) {
-  const auto known = most_wrong_.find(k);
-  if (known != most_wrong_.end()) return known->second;
+std::int64_t Stretch::max_wrong(int k) {
+  const auto known = max_wrong_.find(k);
+  if (known != max_wrong_.end()) return known->second;
   const RunLayer plain = print(layers_, k, &InverseLayer::plain);
-  return most_wrong_[k] =
+  return max_wrong_[k] =
              std::max(wrong_voxels(layer(k), printed(k)), wrong_voxels(layer(k), plain));
 }
 
@@ -113,7 +113,7 @@ Stretch Stretch::cut(const Rect& pixels, LayerRange range) {
   };
   Stretch out = *this;
   out.layers_.clear();
-  out.most_wrong_.clear();
+  out.max_wrong_.clear();
   out.box_ = in_voxels[0];
   out.open_below_ = open_below_ || range.first > 0;
   out.open_above_ = open_above_ || range.last < count();
@@ -134,8 +134,8 @@ Stretch Stretch::cut(const Rect& pixels, LayerRange range) {
     part.printed = std::make_shared<const RunLayer>(out.print(out.layers_, k, &InverseLayer::mask));
     // The whole layer may still get as much worse.
     const int here = k + range.first;
-    out.most_wrong_[k] = most_wrong(here) - wrong_voxels(layer(here), printed(here)) +
-                         wrong_voxels(*part.layer, *part.printed);
+    out.max_wrong_[k] = max_wrong(here) - wrong_voxels(layer(here), printed(here)) +
+                        wrong_voxels(*part.layer, *part.printed);
     out.layers_[at(k)] = std::make_shared<const PrintedLayer>(std::move(part));
   }
   for (int k = 0; k < out.count(); ++k) out.look_at(out.layers_, k);
@@ -171,7 +171,7 @@ bool Stretch::take(const Patch& patch) {
       grown(patch.layers, LayerReach::both_sides(by_->printer.window_reach()), {0, count()});
   for (int k = prints.first; k < prints.last; ++k) {
     auto print_of = std::make_shared<const RunLayer>(print(next, k, &InverseLayer::mask));
-    if (wrong_voxels(layer(k), *print_of) > most_wrong(k)) return false;
+    if (wrong_voxels(layer(k), *print_of) > max_wrong(k)) return false;
     next[at(k)] = std::make_shared<const PrintedLayer>(next[at(k)]->layer, std::move(print_of),
                                                        layers_[at(k)]->missing);
   }

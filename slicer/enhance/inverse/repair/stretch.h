@@ -75,7 +75,7 @@ class Stretch {
   Faults faults_of(const Layers& layers) const;
   RunLayer print(const Layers& layers, int k, Shared<RunLayer> InverseLayer::*mask) const;
   void look_at(Layers& layers, int k) const;
-  std::int64_t most_wrong(int k);
+  std::int64_t max_wrong(int k);
   RunLayer filling(const Patch& patch, const InverseLayer& of) const;
 
   const SearchModel* by_;
@@ -84,7 +84,7 @@ class Stretch {
   Rect whole_;       // the job's box, in voxels
   bool open_below_;  // the job goes on below the first of these layers
   bool open_above_;  // and above the last
-  std::map<int, std::int64_t> most_wrong_;  // by layer, as far as it was asked for
+  std::map<int, std::int64_t> max_wrong_;  // by layer, as far as it was asked for
   Faults faults_;
 };
 

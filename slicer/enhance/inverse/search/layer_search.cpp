@@ -17,7 +17,7 @@ namespace {
 // Tiles overlap by this much, so that no pixel is settled before its neighbors have been seen.
 constexpr int kOverlapPx = 4;
 // Sweeps over a tile; trials end after 3 to 8.
-constexpr int kMostSweeps = 20;
+constexpr int kMaxSweeps = 20;
 
 // What a pixel can do, the short way where all that it reaches is alike.
 PixelSight look(const LocalDose& dose, const Surroundings& around,
@@ -27,10 +27,10 @@ PixelSight look(const LocalDose& dose, const Surroundings& around,
   for (const auto& [offset, change] : changes) {
     if (!change.uniform(reach)) return dose.sight(x, y);
     const int cost = *around.cost(offset, true).at(reach.x0, reach.y0);
-    sight.least_cost = std::min(sight.least_cost, cost);
-    sight.most_cost = std::max(sight.most_cost, cost);
+    sight.min_cost = std::min(sight.min_cost, cost);
+    sight.max_cost = std::max(sight.max_cost, cost);
   }
-  return sight.least_cost < 0 && sight.most_cost > 0 ? dose.sight(x, y) : sight;
+  return sight.min_cost < 0 && sight.max_cost > 0 ? dose.sight(x, y) : sight;
 }
 
 bool meets(const RunLayer& layer, const Rect& rect) {
@@ -119,9 +119,9 @@ void LayerSearch::look_over(Tile& tile, const SearchStart* from_scratch) {
   for (int y = tile.rect.y0; y < tile.rect.y1; ++y) {
     for (int x = tile.rect.x0; x < tile.rect.x1; ++x) {
       const PixelSight sight = look(dose, around, changes, x, y);
-      const bool open = sight.least_cost < 0 && sight.most_cost > 0;
+      const bool open = sight.min_cost < 0 && sight.max_cost > 0;
       if (open) tile.pixels.push_back({x, y});
-      *wanted.at(x, y) = open ? sight.wanted : sight.least_cost < 0;
+      *wanted.at(x, y) = open ? sight.wanted : sight.min_cost < 0;
     }
   }
   if (from_scratch != nullptr) begin(tile, wanted, *from_scratch, dose);
@@ -173,7 +173,7 @@ void LayerSearch::search(const Tile& tile) {
   LocalDose dose(by_.models, by_.grid, tile.rect, around);
   around.look_at(dose);
   dose.reset();
-  PixelSearch(dose, mask_, tile.pixels, by_.rules).run(kMostSweeps);
+  PixelSearch(dose, mask_, tile.pixels, by_.rules).run(kMaxSweeps);
 }
 
 }  // namespace binderjet

@@ -152,7 +152,7 @@ LocalDose::LocalDose(std::span<const StampedModel> models, const Grid& grid, con
   const bool shifts = around_.shifts(0) != nullptr;
   for (std::size_t axis = 0; axis < 2 && shifts; ++axis) {
     // A part of a voxel more on each side, and what makes stamps whole vectors.
-    const int most = around_.most_shift_vx()[axis] + 2;
+    const int most = around_.max_shift_vx()[axis] + 2;
     first_[axis] -= most;
     last_[axis] += most + kStampVector;
   }
@@ -210,7 +210,7 @@ void LocalDose::add_fit(const PixelFit* fit) {
 }
 
 int LocalDose::within_most(int shift, std::size_t axis) const {
-  const int most = around_.most_shift_vx()[axis] * kFine;
+  const int most = around_.max_shift_vx()[axis] * kFine;
   return std::clamp(shift, -most, most);
 }
 
@@ -251,8 +251,8 @@ PixelSight LocalDose::sight(int x, int y) const {
     const Plane<int>& costs = cost(field);
     const Stamp& stamp = *field.fitted[landing.fit];
     double by_cost = 0;
-    weigh(stamp, under(costs, stamp, x, y, landing), costs.stride(), sight.least_cost,
-          sight.most_cost, by_cost);
+    weigh(stamp, under(costs, stamp, x, y, landing), costs.stride(), sight.min_cost, sight.max_cost,
+          by_cost);
     if (!field.nominal) continue;
     weighted += by_cost;
     binder += stamp.total;

@@ -32,9 +32,9 @@ class Surroundings {
   virtual const Plane<int>& cost(int layer, bool nominal) const = 0;
   // At least LocalDose::mask_rect() of the layer's mask as it is.
   virtual const Plane<std::uint8_t>& mask(int layer) const = 0;
-  // Null if no mask is shifted. Shifts are taken as at most `most_shift_vx()`.
+  // Null if no mask is shifted. Shifts are taken as at most `max_shift_vx()`.
   virtual const ShiftedMask* shifts(int layer) const = 0;
-  virtual std::array<int, 2> most_shift_vx() const = 0;
+  virtual std::array<int, 2> max_shift_vx() const = 0;
   // By what the dose of a voxel is multiplied; null if by 1 everywhere. As large as cost().
   virtual const Plane<float>* gain(int layer) const = 0;
 };
@@ -43,9 +43,9 @@ struct StampOverlay;  // a stamp laid on the dose; for the loops over its voxels
 
 // What a pixel can do for the print, whatever the mask around it.
 struct PixelSight {
-  int least_cost = 0;  // the least cost of a voxel that the pixel has binder for
-  int most_cost = 0;   // the largest
-  double wanted = 0;   // the share of the pixel's binder that lands where binder is wanted
+  int min_cost = 0;   // the least cost of a voxel that the pixel has binder for
+  int max_cost = 0;   // the largest
+  double wanted = 0;  // the share of the pixel's binder that lands where binder is wanted
 };
 
 class LocalDose {

@@ -32,12 +32,12 @@ PixelSearch::PixelSearch(LocalDose& dose, Plane<std::uint8_t>& mask, std::span<c
   for (const auto& [x, y] : pixels_) *free_.at(x, y) = 1;
 }
 
-void PixelSearch::run(int most_sweeps) {
+void PixelSearch::run(int max_sweeps) {
   // Swaps are dear and help most where flips have settled.
   for (const bool with_swaps : {false, true}) {
     for (const auto& [x, y] : pixels_) *waiting_.at(x, y) = 1;
     bool better = true;
-    for (int sweep = 0; better && sweep < most_sweeps; ++sweep) {
+    for (int sweep = 0; better && sweep < max_sweeps; ++sweep) {
       better = false;
       for (const Pixel& p : pixels_) {
         std::uint8_t& waits = *waiting_.at(p[0], p[1]);

@@ -23,8 +23,8 @@ class PixelSearch {
               const MaskRules& rules);
 
   // Visits the pixels in their order, again and again, until none helps any more: each step lowers
-  // the weighted count of wrong voxels, so it ends. `most_sweeps` bounds the time.
-  void run(int most_sweeps);
+  // the weighted count of wrong voxels, so it ends. `max_sweeps` bounds the time.
+  void run(int max_sweeps);
 
  private:
   int sign(const Pixel& p) const { return *mask_.at(p[0], p[1]) != 0 ? -1 : 1; }

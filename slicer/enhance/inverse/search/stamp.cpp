@@ -74,7 +74,7 @@ bool same_dose(const AssembledModel& a, const AssembledModel& b) {
                     });
 }
 
-int least_dose(const AssembledModel& form, const std::vector<Stamp>& stamps, int unit) {
+int min_dose(const AssembledModel& form, const std::vector<Stamp>& stamps, int unit) {
   // Each pixel in reach may be half a unit off.
   std::size_t pixels = 1;
   for (const Stamp& stamp : stamps) pixels += stamp.dose.size();
@@ -115,7 +115,7 @@ std::vector<StampedModel> stamped(std::span<const PrinterModel> models,
       forms.push_back(&form);
       out.push_back(stamped(form, grid));
     }
-    out[at].levels.push_back({least_dose(form, out[at].stamps, out[at].unit), weights[m]});
+    out[at].levels.push_back({min_dose(form, out[at].stamps, out[at].unit), weights[m]});
   }
   return out;
 }

@@ -35,7 +35,7 @@ class TileSurroundings : public Surroundings {
     return layer == 0 ? own_ : masks_.at(layer);
   }
   const ShiftedMask* shifts(int layer) const override { return places_.shifts(layer); }
-  std::array<int, 2> most_shift_vx() const override { return places_.most_shift_vx(); }
+  std::array<int, 2> max_shift_vx() const override { return places_.max_shift_vx(); }
   const Plane<float>* gain(int layer) const override {
     return places_.has_gains() ? &gains_.at(layer) : nullptr;
   }

@@ -29,9 +29,9 @@ const ShiftedMask* WindowPlaces::shifts(int offset) const {
   return shifts_.empty() ? nullptr : &shifts_.at(offset);
 }
 
-std::array<int, 2> WindowPlaces::most_shift_vx() const {
-  const PlacedDose& placed = model_.form().placed;
-  return {placed.most_shift_vx(grid_, 0), placed.most_shift_vx(grid_, 1)};
+std::array<int, 2> WindowPlaces::max_shift_vx() const {
+  const BedDependence& placed = model_.form().placed;
+  return {placed.max_shift_vx(grid_, 0), placed.max_shift_vx(grid_, 1)};
 }
 
 double WindowPlaces::gain(int offset, int x_vx, int y_vx) const {

@@ -23,7 +23,7 @@ class WindowPlaces {
 
   // Null if no mask is shifted; then nor is any other.
   const ShiftedMask* shifts(int offset) const;
-  std::array<int, 2> most_shift_vx() const;
+  std::array<int, 2> max_shift_vx() const;
   bool has_gains() const { return !model_.form().placed.gains.empty(); }
   // Of a voxel of a layer whose print the middle one's mask changes.
   double gain(int offset, int x_vx, int y_vx) const;

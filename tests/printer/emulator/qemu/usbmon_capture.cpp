@@ -52,7 +52,7 @@ struct PcapHead {
   std::uint32_t magic = 0xa1b2c3d4;
   std::uint16_t major = 2, minor = 4;
   std::uint32_t zone = 0, accuracy = 0;
-  std::uint32_t most_bytes = 262144;
+  std::uint32_t max_bytes = 262144;
   std::uint32_t link_type = 220;  // usbmon's 64-byte heads
 };
 struct PacketHead {

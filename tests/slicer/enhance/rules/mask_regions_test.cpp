@@ -16,8 +16,8 @@ TEST(MaskRegions, TakeABayForPowderAndAPondForAHole) {
   mask.append_row(std::vector<int>{0, 1, 3, 4});  // a pond of two pixels
   mask.append_row(std::vector<int>{1, 4, 6, 7});  // a bay at the side, an island of one
   mask.append_row(std::vector<int>{0, 4});
-  EXPECT_EQ(mask_regions(mask).least_hole_px, 2);
-  EXPECT_EQ(mask_regions(mask).least_island_px, 1);
+  EXPECT_EQ(mask_regions(mask).smallest_hole_px, 2);
+  EXPECT_EQ(mask_regions(mask).smallest_island_px, 1);
 }
 
 TEST(MaskRegions, AreThoseOfAFlood) {
@@ -27,8 +27,8 @@ TEST(MaskRegions, AreThoseOfAFlood) {
     const RunLayer mask =
         whole::slice(random.volume(random.number(1, 20), random.number(1, 20), 1), 0);
     const MaskRegions flooded = whole::mask_regions(mask);
-    ASSERT_EQ(mask_regions(mask).least_island_px, flooded.least_island_px);
-    ASSERT_EQ(mask_regions(mask).least_hole_px, flooded.least_hole_px);
+    ASSERT_EQ(mask_regions(mask).smallest_island_px, flooded.smallest_island_px);
+    ASSERT_EQ(mask_regions(mask).smallest_hole_px, flooded.smallest_hole_px);
   }
 }
 

@@ -50,8 +50,8 @@ TEST(MaskRules, LeaveNothingThatIsTooSmall) {
     Plane<std::uint8_t> mask = plane_of(whole::slice(noise, 0), rules.most());
     obey(rules, {0, 0, noise.nx, noise.ny}, mask);
     const MaskRegions found = whole::mask_regions(to_layer(mask, noise.nx, noise.ny));
-    ASSERT_GE(found.least_island_px, rules.min_island_px);
-    ASSERT_GE(found.least_hole_px, rules.min_hole_px);
+    ASSERT_GE(found.smallest_island_px, rules.min_island_px);
+    ASSERT_GE(found.smallest_hole_px, rules.min_hole_px);
   }
 }
 
@@ -100,8 +100,8 @@ TEST(MaskRules, CheckAroundAFlipSeesAllThatItCanBreak) {
     const int y = random.number(0, noise.ny - 1);
     *mask.at(x, y) ^= 1;
     const MaskRegions found = whole::mask_regions(to_layer(mask, noise.nx, noise.ny));
-    const bool fits =
-        found.least_island_px >= rules.min_island_px && found.least_hole_px >= rules.min_hole_px;
+    const bool fits = found.smallest_island_px >= rules.min_island_px &&
+                      found.smallest_hole_px >= rules.min_hole_px;
     ASSERT_EQ(RuleCheck(rules).fits_around(mask, x, y), fits);
     refused += static_cast<int>(!fits);
   }

@@ -43,7 +43,7 @@ TEST(BoxThreshold, MovesNoStraightEdgeAtHalf) {
     mask.end_row();
   }
   const BoxWeights box = box_weights(6.4);
-  const RunLayer printed = box_threshold(mask, {1, 1}, box, box, least_sum(box, box, 0.5));
+  const RunLayer printed = box_threshold(mask, {1, 1}, box, box, min_sum(box, box, 0.5));
   const std::span<const int> middle = printed.row(10);
   EXPECT_EQ(std::vector<int>(middle.begin(), middle.end()), (std::vector<int>{5, 15}));
 }
@@ -57,7 +57,7 @@ RC_GTEST_PROP(BoxThresholdProperty, EqualsTheSumOverEveryVoxel, ()) {
                                                            rc::gen::arbitrary<bool>());
   const BoxWeights x = box_weights(*rc::gen::inRange(1, 140) / 10.0);
   const BoxWeights y = box_weights(*rc::gen::inRange(1, 90) / 10.0);
-  const std::int64_t least = least_sum(x, y, *rc::gen::inRange(1, 101) / 100.0);
+  const std::int64_t least = min_sum(x, y, *rc::gen::inRange(1, 101) / 100.0);
   const RunLayer mask = layer_of(nx, ny, bits);
   const RunLayer out = box_threshold(mask, {rx, ry}, x, y, least);
   RC_ASSERT(out.width() == nx * rx);

@@ -63,8 +63,8 @@ TEST(MaskPatch, ObeysTheRulesEverywhereAndChangesNothingFarOff) {
     const std::array places{Rect{x, y, x + random.number(0, 9), y + random.number(0, 9)}};
     const RunLayer out = patched(mask, any(), places, rules);
     const MaskRegions found = mask_regions(out);
-    ASSERT_GE(found.least_hole_px, rules.min_hole_px);
-    ASSERT_GE(found.least_island_px, rules.min_island_px);
+    ASSERT_GE(found.smallest_hole_px, rules.min_hole_px);
+    ASSERT_GE(found.smallest_island_px, rules.min_island_px);
     const std::array near{places[0].grown(2 * rules.most(), 2 * rules.most())};
     ASSERT_EQ(without(out, within(out, near)), without(mask, within(mask, near)));
   }

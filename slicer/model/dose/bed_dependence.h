@@ -22,7 +22,7 @@ struct Spot {
   double y_mm = 0;
   double z_mm = 0;  // the middle of its layer
   int layer = 0;
-  double density = 0;  // the share of solid masks around it, where PlacedDose asks for it
+  double density = 0;  // the share of solid masks around it, where BedDependence asks for it
 };
 
 // The dose is multiplied by max(0, 1 + amount(spot)).
@@ -35,10 +35,10 @@ struct DoseGain {
 // the amount at its middle, so that rows stay rows.
 struct MaskShift {
   std::function<std::array<double, 2>(const Spot&)> by_mm;
-  double most_mm;  // neither component is larger within 1 m
+  double max_mm;  // neither component is larger within 1 m
 };
 
-struct PlacedDose {
+struct BedDependence {
   std::vector<DoseGain> gains;
   std::vector<MaskShift> shifts;
   // Half the width of the box whose solid share is Spot::density; in z whole layers.
@@ -62,9 +62,9 @@ struct PlacedDose {
     return sum;
   }
   // No mask is shifted by more voxels than this.
-  int most_shift_vx(const Grid& grid, int axis) const {
+  int max_shift_vx(const Grid& grid, int axis) const {
     double sum = 0;
-    for (const MaskShift& shift : shifts) sum += shift.most_mm;
+    for (const MaskShift& shift : shifts) sum += shift.max_mm;
     return pixels_for(sum, grid.voxel_mm(axis));
   }
   // Calls take(pixel, share): from this pixel of a mask row on, binder is weaker by this share of a
@@ -105,14 +105,14 @@ inline Spot spot_at(const Grid& grid, const JobPlace& place, double x_vx, double
 // Of the middle layer of a window of masks (null is powder) that reaches at least
 // placed.density_layers(); none if no effect asks for it.
 inline std::optional<DensityField> density_of(const RunWindow& window, const Grid& grid,
-                                              const PlacedDose& placed) {
+                                              const BedDependence& placed) {
   if (!placed.density_radius_mm) return std::nullopt;
   return DensityField(window.part(0, placed.density_layers(grid)), grid, *placed.density_radius_mm);
 }
 
 // By what the dose of voxel (x, y) of a layer is multiplied; `density` may be null if no effect
 // asks for it.
-inline double gain_at_voxel(const Grid& grid, const JobPlace& place, const PlacedDose& placed,
+inline double gain_at_voxel(const Grid& grid, const JobPlace& place, const BedDependence& placed,
                             const DensityField* density, int x_vx, int y_vx, int layer) {
   Spot spot = spot_at(grid, place, x_vx, y_vx, layer);
   if (density != nullptr) spot.density = density->at(x_vx, y_vx);
