@@ -109,9 +109,10 @@ TEST(EveryEffect, ShowsInThePrintOfItsExampleOrIsRandom) {
                                   {"threshold", {}, {{"level", {0.5}}}}},
                                  kExampleGrid, kExamplePlace);
       bool shows = false;
-      for (int round = 0; round < 5; ++round) {
+      // Not every random part has an edge where the effect acts.
+      for (int round = 0; round < 60 && !shows; ++round) {
         const Volume mask = random_mask(random);
-        shows = shows || streamed(with, mask, 3) != streamed(without, mask, 3);
+        shows = streamed(with, mask, 3) != streamed(without, mask, 3);
       }
       EXPECT_EQ(shows, kind.random_layers == nullptr);
     }
