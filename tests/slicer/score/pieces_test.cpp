@@ -26,7 +26,7 @@ PieceFinder found(const Volume& target, const Volume& printed, int rz) {
 }
 
 // Parts in more than one piece.
-std::int64_t broken(const Volume& target, const Volume& printed, int rz) {
+std::int64_t parts_in_pieces(const Volume& target, const Volume& printed, int rz) {
   const auto by_part = found(target, printed, rz).pieces_by_part();
   return std::count_if(by_part.begin(), by_part.end(),
                        [](const auto& part) { return part.second.size() > 1; });
@@ -61,8 +61,8 @@ TEST(Pieces, ABarWithAGapInItsPrintComesOutInTwo) {
   bar.fill([](int x, int, int) { return x >= 2 && x < 18; });
   Volume broken(20, 3, 1);
   broken.fill([](int x, int, int) { return x >= 3 && x < 17 && x != 9; });
-  EXPECT_EQ(broken(bar, bar, 1), 0);
-  EXPECT_EQ(broken(bar, broken, 2), 1);
+  EXPECT_EQ(parts_in_pieces(bar, bar, 1), 0);
+  EXPECT_EQ(parts_in_pieces(bar, broken, 2), 1);
 }
 
 TEST(Pieces, TwoLegsThatMeetAboveAreOnePart) {
@@ -71,8 +71,8 @@ TEST(Pieces, TwoLegsThatMeetAboveAreOnePart) {
   arch.fill([](int x, int, int z) { return z >= 2 || x < 3 || x >= 6; });
   Volume legs(9, 1, 4);
   legs.fill([](int x, int, int) { return x < 3 || x >= 6; });
-  EXPECT_EQ(broken(arch, arch, 1), 0);
-  EXPECT_EQ(broken(arch, legs, 1), 1);
+  EXPECT_EQ(parts_in_pieces(arch, arch, 1), 0);
+  EXPECT_EQ(parts_in_pieces(arch, legs, 1), 1);
 }
 
 TEST(Pieces, TheLesserPieceOfABrokenBarIsLoose) {
@@ -180,7 +180,7 @@ TEST(Pieces, AreThoseOfAFlood) {
     }
     std::int64_t expected = 0;
     for (const auto& [part, all] : of) expected += all.size() > 1 ? 1 : 0;
-    ASSERT_EQ(broken(target, printed, rz), expected);
+    ASSERT_EQ(parts_in_pieces(target, printed, rz), expected);
   }
 }
 
