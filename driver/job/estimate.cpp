@@ -47,7 +47,12 @@ std::string text_of(const Estimate& estimate, const JobHeader& header) {
 }
 
 void report(const JobHeader& header, const Totals& totals, const std::string& out,
-            const std::vector<std::string>& warnings, const Console& console) {
+            std::vector<std::string> warnings, const Console& console) {
+  const std::string changed = rule_warning(totals.rules, header.profile.mask);
+  if (!changed.empty()) {
+    console.warning(changed);
+    warnings.push_back(changed);
+  }
   const Estimate estimate = estimate_of(header, totals);
   const nlohmann::ordered_json json = {{"job", out},
                                        {"layers", totals.layers},

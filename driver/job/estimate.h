@@ -9,6 +9,7 @@
 
 #include "driver/base/console.h"
 #include "driver/job/job.h"
+#include "driver/job/job_masks.h"
 
 namespace binderjet {
 
@@ -16,18 +17,21 @@ struct EncodedLayer {
   std::vector<std::byte> record;
   std::int64_t mask_px = 0;
   std::int64_t target_vx = 0;
+  RuleChanges rule_changes;
 };
 
 struct Totals {
   int layers = 0;
   std::int64_t mask_px = 0;
   std::int64_t target_vx = 0;
+  RuleTally rules;
   double seconds = 0;
 
   void add(const EncodedLayer& layer) {
     ++layers;
     mask_px += layer.mask_px;
     target_vx += layer.target_vx;
+    rules.add(layer.rule_changes);
   }
 };
 
@@ -40,8 +44,8 @@ struct Estimate {
 Estimate estimate_of(const JobHeader& header, const Totals& totals);
 std::string text_of(const Estimate& estimate, const JobHeader& header);
 
-// The result of `slice`, for a person or as JSON.
+// The result of `slice`, for a person or as JSON; says first what the mask rules have changed.
 void report(const JobHeader& header, const Totals& totals, const std::string& out,
-            const std::vector<std::string>& warnings, const Console& console);
+            std::vector<std::string> warnings, const Console& console);
 
 }  // namespace binderjet

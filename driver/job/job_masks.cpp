@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "driver/job/job_masks.h"
 
+#include <fmt/format.h>
+
 #include <utility>
 #include <vector>
 
@@ -23,10 +25,38 @@ Pipeline<MaskLayer> enhanced(const JobHeader& header, const Pipeline<VoxelLayer>
   return paper_masks(target, header.grid, model, header.passes);
 }
 
+// "3 islands of fewer than 4 pixels".
+std::string regions(std::int64_t count, const char* word, int least_px) {
+  return fmt::format("{} {}{} of fewer than {} pixels", count, word, count == 1 ? "" : "s",
+                     least_px);
+}
+
 }  // namespace
 
+void RuleTally::add(const RuleChanges& of_layer) {
+  changes.islands_erased += of_layer.islands_erased;
+  changes.holes_filled += of_layer.holes_filled;
+  layers += static_cast<std::int64_t>(of_layer.any());
+}
+
+std::string rule_warning(const RuleTally& tally, const MaskRules& rules) {
+  if (!tally.changes.any()) return "";
+  std::string what;
+  if (tally.changes.islands_erased > 0) {
+    what = "erased " + regions(tally.changes.islands_erased, "island", rules.min_island_px);
+  }
+  if (tally.changes.holes_filled > 0) {
+    what += (what.empty() ? "filled " : ", filled ") +
+            regions(tally.changes.holes_filled, "hole", rules.min_hole_px);
+  }
+  return fmt::format("the profile's mask minimum {} in {} layer{}", what, tally.layers,
+                     tally.layers == 1 ? "" : "s");
+}
+
 Pipeline<MaskLayer> job_masks(const JobHeader& header, std::shared_ptr<const Mesh> mesh) {
-  return enhanced(header, voxel_layers(std::move(mesh), header.grid, header.box));
+  const Pipeline<MaskLayer> masks =
+      enhanced(header, voxel_layers(std::move(mesh), header.grid, header.box));
+  return header.profile.mask.most() > 1 ? obeying_masks(masks, header.profile.mask) : masks;
 }
 
 }  // namespace binderjet

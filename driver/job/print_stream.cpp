@@ -5,7 +5,6 @@
 
 #include <utility>
 
-#include "driver/job/job_masks.h"
 #include "slicer/model/print_masks.h"
 
 namespace binderjet {
@@ -27,6 +26,8 @@ Pipeline<RunLayer> printed_job(const JobHeader& header, std::shared_ptr<const Me
                                std::shared_ptr<MaskTally> tally) {
   const auto count = [tally = std::move(tally)](int, const Window<MaskLayer>& window) {
     tally->pixels += window.middle().mask.count();
+    const std::lock_guard lock(tally->mutex);
+    tally->rules.add(window.middle().changes);
     return window.middle().mask;
   };
   return print_masks(job_masks(header, std::move(mesh)).then("count pixels", {}, count),

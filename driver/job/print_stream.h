@@ -6,9 +6,11 @@
 #include <atomic>
 #include <cstdint>
 #include <memory>
+#include <mutex>
 #include <string>
 
 #include "driver/base/console.h"
+#include "driver/job/job_masks.h"
 #include "driver/job/mask_source.h"
 #include "slicer/layers/pipeline.h"
 #include "slicer/model/printer_model.h"
@@ -24,6 +26,8 @@ std::unique_ptr<Stream<RunLayer>> printed_stream(const MaskSource& masks,
 // What is counted of masks on their way into the printer model, on several threads.
 struct MaskTally {
   std::atomic<std::int64_t> pixels = 0;
+  std::mutex mutex;  // for the rules
+  RuleTally rules;
 };
 // The same of a job that is being sliced; `mesh` is its parts as one.
 Pipeline<RunLayer> printed_job(const JobHeader& header, std::shared_ptr<const Mesh> mesh,

@@ -102,8 +102,8 @@ std::vector<Part> load_parts(const SliceOptions& options, const JobHeader& heade
 }
 
 EncodedLayer encode(int layer, const MaskLayer& masks) {
-  EncodedLayer out{encode_record(RecordKind::kMask, layer, pack(masks.mask)), masks.mask.count(),
-                   0};
+  EncodedLayer out{encode_record(RecordKind::kMask, layer, pack(masks.mask)), masks.mask.count(), 0,
+                   masks.changes};
   for (const RunLayer& slice : masks.target->slices) out.target_vx += slice.count();
   return out;
 }

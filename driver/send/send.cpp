@@ -51,6 +51,8 @@ class LayerSource {
  public:
   virtual ~LayerSource() = default;
   virtual std::vector<std::byte> next(int layer) = 0;
+  // What a person should know of the layers; asked for after the last one.
+  virtual std::string warning() { return ""; }
 };
 // Opens the source at the first layer to send.
 using OpenSource = std::function<std::unique_ptr<LayerSource>(int first)>;
@@ -73,6 +75,7 @@ class ComputedLayers : public LayerSource {
   ComputedLayers(const JobHeader& header, std::shared_ptr<const Mesh> mesh,
                  std::shared_ptr<const ColorField> color, int first)
       : queue_(kQueuedLayers),
+        mask_rules_(header.profile.mask),
         thread_([this, header, mesh = std::move(mesh), color = std::move(color), first] {
           compute(header, mesh, color, first);
         }) {}
@@ -81,6 +84,8 @@ class ComputedLayers : public LayerSource {
     thread_.join();
   }
   std::vector<std::byte> next(int) override { return queue_.pop(); }
+  // All is added before the last layer is pushed, and then nothing more.
+  std::string warning() override { return rule_warning(rules_, mask_rules_); }
 
  private:
   void compute(const JobHeader& header, const std::shared_ptr<const Mesh>& mesh,
@@ -89,6 +94,7 @@ class ComputedLayers : public LayerSource {
       const auto stream = encoded_layers(header, mesh, color).layers({first, header.layers()});
       while (stream->rest().size() > 0) {
         for (const Shared<EncodedLayer>& layer : stream->next(kStreamBlock)) {
+          rules_.add(layer->rule_changes);
           if (!queue_.push(layer->record)) return;
         }
       }
@@ -98,6 +104,8 @@ class ComputedLayers : public LayerSource {
   }
 
   LayerQueue queue_;
+  MaskRules mask_rules_;
+  RuleTally rules_;
   std::thread thread_;
 };
 
@@ -108,6 +116,7 @@ void send_layers(const Console& console, const std::string& uri, const JobTicket
   std::string id = resumed;
   std::uint64_t bytes = 0;
   int first = 0;
+  std::string warning;
   try {
     if (resumed.empty()) {
       id = value_or_throw(backend->start(ticket));
@@ -123,6 +132,7 @@ void send_layers(const Console& console, const std::string& uri, const JobTicket
       value_or_throw(backend->send(layer, records));
       bytes += records.size();
     }
+    if (source) warning = source->warning();
     value_or_throw(backend->end());
   } catch (const Error& error) {
     backend.reset();  // holds the job
@@ -130,6 +140,7 @@ void send_layers(const Console& console, const std::string& uri, const JobTicket
     throw Error(error.kind(), "", error.what() + how_to_resume(*backend, id, uri));
   }
 
+  if (!warning.empty()) console.warning(warning);
   const double seconds =
       std::chrono::duration<double>(std::chrono::steady_clock::now() - start_time).count();
   nlohmann::ordered_json result;

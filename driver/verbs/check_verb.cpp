@@ -93,6 +93,7 @@ Checked check_plan(const SlicePlan& plan, const Console& console) {
   for (const Region& joint : score.joints()) checked.findings.add("touching", joint);
   checked.excess = score.voxels().excess();
   checked.totals.mask_px = tally->pixels;
+  checked.totals.rules = tally->rules;
   checked.totals.target_vx = score.voxels().solid;
   return checked;
 }
@@ -106,9 +107,14 @@ std::string place_text(const Json& found) {
 }
 
 void check(const SliceOptions& options, const Console& console) {
-  const SlicePlan plan = plan_slices(options, console);
+  SlicePlan plan = plan_slices(options, console);
   const JobHeader& header = plan.header;
   const Checked checked = check_plan(plan, console);
+  const std::string changed = rule_warning(checked.totals.rules, header.profile.mask);
+  if (!changed.empty()) {
+    console.warning(changed);
+    plan.warnings.push_back(changed);
+  }
   const std::array<double, 3> origin_mm = {header.box.bed_px[0] * header.grid.pitch_mm[0],
                                            header.box.bed_px[1] * header.grid.pitch_mm[1], 0};
 
