@@ -6,7 +6,7 @@
 
 #include "driver/base/files.h"
 #include "slicer/base/error.h"
-#include "slicer/mesh/read_mesh.h"
+#include "slicer/mesh/read/read_mesh.h"
 #include "slicer/mesh/repair.h"
 
 namespace binderjet {

@@ -13,7 +13,7 @@ namespace binderjet {
 namespace {
 
 // A golf ball's dimples end in single pixels wherever a layer just touches them.
-JobHeader golf_ball_job(const std::string& enhance, const Mesh& ball) {
+JobHeader golf_ball_job(Enhancement enhance, const Mesh& ball) {
   JobHeader header;
   header.profile = load_profile("z450");
   header.grid = header.profile.grid({});
@@ -41,7 +41,7 @@ Sliced slice(const JobHeader& header, const std::shared_ptr<const Mesh>& mesh) {
   return out;
 }
 
-class MaskMinimum : public testing::TestWithParam<const char*> {
+class MaskMinimum : public testing::TestWithParam<Enhancement> {
  protected:
   std::shared_ptr<const Mesh> ball_ =
       std::make_shared<const Mesh>(models::at_origin(models::golf_ball(3, 5)));
@@ -65,16 +65,16 @@ TEST_P(MaskMinimum, ChangesAsMuchAsItSays) {
   EXPECT_FALSE(free.tally.changes.any());
   // An inverse mask obeys while it is searched, so nothing is left to change, and with other rules
   // another one is found.
-  if (header_.enhance == "inverse") {
+  if (header_.enhance == Enhancement::kInverse) {
     EXPECT_FALSE(sliced.tally.changes.any());
   } else {
     EXPECT_EQ(sliced.tally.layers, changed);
   }
-  if (header_.enhance == "paper") EXPECT_GT(changed, 0) << "or this test shows nothing";
+  if (header_.enhance == Enhancement::kPaper) EXPECT_GT(changed, 0) << "or this test shows nothing";
 }
 
-INSTANTIATE_TEST_SUITE_P(Ways, MaskMinimum, testing::Values("none", "paper", "inverse"),
-                         [](const auto& info) { return std::string(info.param); });
+INSTANTIATE_TEST_SUITE_P(Ways, MaskMinimum, testing::ValuesIn(kEnhancements),
+                         [](const auto& info) { return std::string(word(info.param)); });
 
 TEST(MaskMinimumWarning, SaysWhatWasErasedAndFilledAndWhere) {
   const MaskRules rules{4, 5};

@@ -100,13 +100,13 @@ std::string formula(const StepInfo& step, const std::string& written, const Leng
 class Steps : public testing::Test {
  protected:
   // `effect` may make binder cross layers.
-  JobHeader header(const std::string& enhance, const std::vector<EffectSpec>& effects = {}) const {
+  JobHeader header(Enhancement enhance, const std::vector<EffectSpec>& effects = {}) const {
     JobHeader out;
     out.profile = load_profile("z450");
     out.profile.effects.insert(out.profile.effects.end(), effects.begin(), effects.end());
     out.grid = out.profile.grid({});
     out.enhance = enhance;
-    out.passes = enhance == "paper" ? 2 : 0;
+    out.passes = enhance == Enhancement::kPaper ? 2 : 0;
     out.box = job_box(bounding_box(*mesh_).max, out.grid, {0, 0}, {8, 8});
     return out;
   }
@@ -150,18 +150,19 @@ class Steps : public testing::Test {
 TEST_F(Steps, AreThoseOfTheTableInTheReadme) {
   ASSERT_FALSE(rows_.empty());
   const EffectSpec bleed{"z_bleed_down", {}, {{"share", {0.3}}}};
-  const JobHeader across = header("inverse", {bleed});
+  const JobHeader across = header(Enhancement::kInverse, {bleed});
   const int w = model(across).window_reach();
   ASSERT_GT(w, 0);
   const auto steps = [&](const JobHeader& of) { return job_masks(of, mesh_).steps(); };
-  expect_listed("none", steps(header("none")), {});
-  expect_listed("paper", steps(header("paper")), {});
-  expect_listed("paper", steps(header("paper", {bleed})), {w, 0});
+  expect_listed("none", steps(header(Enhancement::kNone)), {});
+  expect_listed("paper", steps(header(Enhancement::kPaper)), {});
+  expect_listed("paper", steps(header(Enhancement::kPaper, {bleed})), {w, 0});
   expect_listed("inverse", steps(across), {w, 0});
   // Layers that share no print need no second turn.
-  for (const StepInfo& step : steps(header("inverse"))) EXPECT_NE(step.name, "improve again");
+  for (const StepInfo& step : steps(header(Enhancement::kInverse)))
+    EXPECT_NE(step.name, "improve again");
 
-  const JobHeader plain = header("none");
+  const JobHeader plain = header(Enhancement::kNone);
   const auto after = [&](std::vector<StepInfo> all, const std::vector<StepInfo>& before) {
     all.erase(all.begin(), all.begin() + static_cast<std::ptrdiff_t>(before.size()));
     return all;

@@ -53,13 +53,11 @@ Volume random_mask(Random& random) { return random.volume(30, 24, 6, 4); }
 
 // The print as a stream, from windows no larger than the model asks for.
 Volume streamed(const PrinterModel& model, const Volume& mask, int block) {
-  using Print = Step<RunLayer, RunLayer>;
-  const LayerRange layers{0, mask.nz};
-  Print print(whole::layer_stream(mask), layers, model.window_reach(), layers,
-              [&](int layer, Print::Window window) { return model.print(window, layer); });
+  const Pipeline<RunLayer> masks("masks", {0, mask.nz}, whole::layer_stream(mask));
+  const auto print = print_masks(masks, std::make_shared<const PrinterModel>(model)).all_layers();
   std::vector<Shared<RunLayer>> out;
-  while (print.rest().size() > 0) {
-    for (const Shared<RunLayer>& layer : print.next(block)) out.push_back(layer);
+  while (print->rest().size() > 0) {
+    for (const Shared<RunLayer>& layer : print->next(block)) out.push_back(layer);
   }
   return whole::stacked(out);
 }
