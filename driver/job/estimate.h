@@ -8,17 +8,11 @@
 #include <vector>
 
 #include "driver/base/console.h"
+#include "driver/job/encoded_layers.h"
 #include "driver/job/job.h"
 #include "driver/job/job_masks.h"
 
 namespace binderjet {
-
-struct EncodedLayer {
-  std::vector<std::byte> record;
-  std::int64_t mask_px = 0;
-  std::int64_t target_vx = 0;
-  RuleChanges rule_changes;
-};
 
 struct Totals {
   int layers = 0;

@@ -55,7 +55,7 @@ std::string rule_warning(const RuleTally& tally, const MaskRules& rules) {
 Pipeline<MaskLayer> job_masks(const JobHeader& header, std::shared_ptr<const Mesh> mesh) {
   const Pipeline<MaskLayer> masks =
       enhanced(header, voxel_layers(std::move(mesh), header.grid, header.box));
-  return header.profile.mask.most() > 1 ? obeying_masks(masks, header.profile.mask) : masks;
+  return header.profile.mask.largest_px() > 1 ? obeying_masks(masks, header.profile.mask) : masks;
 }
 
 }  // namespace binderjet

@@ -17,7 +17,7 @@
 #include "driver/base/html.h"
 #include "driver/job/parts.h"
 #include "driver/job/print_stream.h"
-#include "driver/job/run_codec.h"
+#include "driver/viewer/run_codec.h"
 #include "driver/viewer/viewer_page.h"
 #include "slicer/base/error.h"
 #include "slicer/model/printer_model.h"

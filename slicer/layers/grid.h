@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The printer grid, the finer voxel grid and the box of a job (slicer/MODEL.md, Grids). Millimeters
-// become pixels and voxels here and nowhere else, so that they are rounded in one way.
+// The printer grid, the finer voxel grid and the box of a job (slicer/MODEL.md, Grids). A
+// part's size and an effect's widths become pixels and voxels here, so that they are rounded in one
+// way.
 #pragma once
 
 #include <array>

@@ -3,9 +3,9 @@
 // its name and how far it looks; how many layers that takes from the step before it is computed
 // here, backwards from the end, and nowhere else.
 //
-//   voxelize --> slice --> print --> paper rule      layers({5, 9}) of a job of 20 layers:
-//            0         1         1                   the rule asks for 4..9, the print for 3..10,
-//                                                    so 3..10 are voxelized
+//   voxelize --> slice --> print --> rule      layers({5, 9}), that is 5 to 8, of a job of 20:
+//            0         1         1             the rule asks for 4 to 9, the print for 3 to 10,
+//                                              so 3 to 10 are voxelized
 //
 // Only a list of functions until layers() is called: then the streams are opened, and nothing is
 // computed before somebody pulls.
@@ -47,9 +47,12 @@ class Pipeline {
   // Begins with a stream that is there already and holds all layers of `job`: layers() can be
   // called once.
   Pipeline(std::string name, LayerRange job, std::unique_ptr<Stream<T>> stream)
-      : Pipeline(std::move(name), job,
-                 [stream = std::make_shared<std::unique_ptr<Stream<T>>>(std::move(stream))](
-                     LayerRange) { return std::move(*stream); }) {}
+      : Pipeline(
+            std::move(name), job,
+            [stream = std::make_shared<std::unique_ptr<Stream<T>>>(std::move(stream))](LayerRange) {
+              assert(*stream != nullptr);
+              return std::move(*stream);
+            }) {}
 
   // Appends a step: Out(k) = make(k, window), the window reaching so far and null beyond the job.
   template <class Make>

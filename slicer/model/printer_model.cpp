@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "slicer/base/error.h"
+#include "slicer/model/effects/level.h"
 
 namespace binderjet {
 
@@ -20,7 +21,7 @@ PrinterModel::PrinterModel(AssembledModel form, const Grid& grid, const JobPlace
   form_.place = place;
   if (form_.level <= 0) {
     throw Error(ErrorKind::kBadInput, "effects",
-                "nothing binds powder: the model needs a threshold or a fill");
+                "nothing binds powder: the model needs " + kinds_with_level("a "));
   }
   choose_filter(grid, place);
 }

@@ -7,7 +7,7 @@
 //   lost      .####.............   the second part is not printed
 //   fused     .#################.   the gap is closed ...
 //   joined    .#################.   ... and through it the two parts are one piece
-//   spurious  .####...##########.#  printed without touching a voxel of the target
+//   spurious  .####...##########.#  printed, and no voxel of it is the target's
 //   loose     .####...#####..###.   the second part's lesser piece comes off
 //
 // Lost and fused are more than wear takes (slicer/score/lost_and_fused.h): a wall that came out
@@ -34,7 +34,7 @@ inline constexpr std::array kFaultKinds{FaultKind::kLost, FaultKind::kFused, Fau
 std::string_view word(FaultKind kind);
 
 // The region is what is lost, fused, spurious or loose, or the bridge that joins two parts; in
-// voxels and slices from the job's first.
+// voxels and slices from those of layer 0, where FaultScope::first_layer counts from.
 struct Fault {
   FaultKind kind = FaultKind::kLost;
   Region region;
@@ -65,7 +65,8 @@ class FaultFinder {
  public:
   explicit FaultFinder(int slices_per_layer, FaultScope scope = {});
 
-  // The next layer up. Returns the faults that end below it; in the order lost, fused, spurious.
+  // The next layer up. Returns the faults that no later layer can go on with: they end below this
+  // layer's uppermost slice. In the order lost, fused, spurious.
   std::vector<Fault> add(const VoxelLayer& target, const RunLayer& printed,
                          const LostAndFused& missing);
   // Those that reach to the end, then the loose and the joined, of which only the end tells.

@@ -17,7 +17,7 @@ struct JobTicket {
   std::string header;  // as in the job file, not looked into
   int layer_count = 0;
   std::string name;    // for people
-  std::string source;  // the job file a resume reads on from; may be empty
+  std::string source;  // what a resume goes on from, a job file or the first model; may be empty
 };
 
 enum class JobState {

@@ -22,7 +22,9 @@ struct FoundEffect {
   Covariate covariate;
   std::vector<std::string> rivals;  // kinds that this print cannot tell from it
   double p = 1;                     // over all candidates that were tried
-  double heldout_gain = 0;          // share of the residual's power gone where the fit did not look
+  // The share of the residual's power that is gone where the fit did not look; of what moves no dose
+  // and was tried in the forward model, the share of the wrong voxels of the layers that were seen.
+  double heldout_gain = 0;
 };
 
 // How far one set of layers is from another: |a xor b| / |b|, and edges in mm.
@@ -60,7 +62,7 @@ struct Remaining {
 enum class Verdict {
   kNone,         // nothing is missing that the print shows
   kEffect,       // an effect that has a name is
-  kUnexplained,  // something is, and it has no name
+  kUnexplained,  // only what has no name was found, or nothing, though the print is far off
 };
 // The word of calibration.json.
 inline const char* word(Verdict verdict) {

@@ -99,7 +99,7 @@ PixelReasons InverseSolver::reasons(LayerWindow layers, int x, int y) const {
   const WindowPlaces places(search_.printer, search_.grid, layers, search_.offsets);
   TileSurroundings around(layers, search_.offsets, places, mask);
   LocalDose dose(search_.models, search_.grid, pixel, around);
-  mask.reset(dose.mask_rect().grown(search_.rules.most(), search_.rules.most()), 0);
+  mask.reset(dose.mask_rect().grown(search_.rules.largest_px(), search_.rules.largest_px()), 0);
   add_layer(*layer_at(layers, 0)->mask, std::uint8_t{1}, mask);
   around.look_at(dose);
   dose.reset();

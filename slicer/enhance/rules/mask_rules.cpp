@@ -30,7 +30,7 @@ bool RuleCheck::fits(const Plane<std::uint8_t>& mask, int x, int y) {
 }
 
 bool RuleCheck::fits_around(const Plane<std::uint8_t>& mask, int x, int y) {
-  if (rules_.most() <= 1) return true;
+  if (rules_.largest_px() <= 1) return true;
   return fits(mask, x, y) && std::all_of(kSides.begin(), kSides.end(), [&](const auto& side) {
            return !mask.rect().holds(x + side[0], y + side[1]) ||
                   fits(mask, x + side[0], y + side[1]);

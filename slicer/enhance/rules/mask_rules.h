@@ -18,11 +18,14 @@
 
 namespace binderjet {
 
+// A profile's [mask]: how many pixels, that meet at their sides, an island of binder and a hole in
+// it must have at least. 1 asks for nothing.
 struct MaskRules {
   int min_island_px = 1;
   int min_hole_px = 1;
 
-  int most() const { return std::max(min_island_px, min_hole_px); }
+  // The larger of both: how far around a pixel one has to look.
+  int largest_px() const { return std::max(min_island_px, min_hole_px); }
 };
 
 // How many islands and holes were too small.
@@ -42,7 +45,7 @@ struct ObeyingMask {
 ObeyingMask obeying_mask(const RunLayer& mask, const MaskRules& rules);
 
 // Asks for the rules around single pixels. Pixels at the edge of the plane hang together with all
-// beyond it, so a plane needs most() pixels around what is asked for.
+// beyond it, so a plane needs largest_px() pixels around what is asked for.
 class RuleCheck {
  public:
   explicit RuleCheck(const MaskRules& rules) : rules_(rules) {}

@@ -8,13 +8,14 @@
 
 #include "slicer/base/error.h"
 #include "slicer/model/effects/catalogue.h"
+#include "slicer/model/effects/level.h"
 
 namespace binderjet {
 
 void AssembledModel::bind_at(double new_level) {
   if (level > 0) {
     throw Error(ErrorKind::kBadInput, "effects",
-                "powder is bound at two levels; keep one threshold or fill");
+                "powder is bound at two levels; keep one " + kinds_with_level());
   }
   level = new_level;
 }

@@ -4,7 +4,7 @@
 //
 // A kind is one file KIND.cpp beside this header, and one line in catalogue.cpp. The file says at
 // its top what every parameter means, and defines one function, EffectKind KIND_effect(). Profiles,
-// simulate, score, check and --enhance inverse need no more than `numbers` and `write_into`;
+// simulate, score, check and --enhance inverse need no more than `words`, `numbers` and `write_into`;
 // calibrate finds and fits the effect by what stands below these (slicer/MODEL.md, "Effects" and
 // "How calibrate chooses").
 #pragma once
@@ -56,7 +56,7 @@ enum class NumberRole {
 struct NumberRule {
   std::string name{};
   std::size_t count = 1;  // how many numbers the parameter has
-  double min = 0;         // allowed: min < value <= max
+  double min = 0;         // allowed: min < value <= max, so -1e-9 where 0 is allowed
   double max = 0;
   bool optional = false;
   NumberRole role = NumberRole::kOther;

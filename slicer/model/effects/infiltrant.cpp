@@ -4,7 +4,7 @@
 //
 //   radius_mm: gaps narrower than twice this are filled (morphological closing by a ball); above 0,
 //              at most 1
-//   skin_mm: how much every face grows, 0 to radius_mm
+//   skin_mm: how much every face grows, from 0 to 1; what is more than radius_mm counts as that
 #include <algorithm>
 
 #include "slicer/model/effects/assembled_model.h"

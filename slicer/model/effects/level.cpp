@@ -1,26 +1,42 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "slicer/model/effects/level.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <utility>
+#include <vector>
 
 #include "slicer/model/effects/catalogue.h"
 
 namespace binderjet {
 namespace {
 
-// Null if this effect does not bind.
-const NumberRule* level_rule(const EffectSpec& effect) {
-  for (const NumberRule& rule : find_effect_kind(effect.kind)->numbers) {
+// Null if effects of this kind do not bind.
+const NumberRule* level_rule(const EffectKind& kind) {
+  for (const NumberRule& rule : kind.numbers) {
     if (rule.role == NumberRole::kLevel) return &rule;
   }
   return nullptr;
 }
+const NumberRule* level_rule(const EffectSpec& effect) {
+  return level_rule(*find_effect_kind(effect.kind));
+}
 
 }  // namespace
 
+std::string kinds_with_level(const std::string& article) {
+  std::vector<std::string> kinds;
+  for (const EffectKind& kind : effect_kinds()) {
+    if (level_rule(kind) != nullptr) kinds.push_back(article + kind.name);
+  }
+  return fmt::format("{}", fmt::join(kinds, " or "));
+}
+
 std::size_t level_place(const EffectList& model) {
-  const auto found = std::find_if(model.begin(), model.end(), level_rule);
+  const auto found = std::find_if(model.begin(), model.end(), [](const EffectSpec& effect) {
+    return level_rule(effect) != nullptr;
+  });
   return static_cast<std::size_t>(found - model.begin());
 }
 

@@ -2,10 +2,14 @@
 // The level of a model, from which dose on powder is bound, whichever of its effects says so.
 #pragma once
 
+#include <string>
+
 #include "slicer/model/effects/effect.h"
 
 namespace binderjet {
 
+// The kinds that can say so, for a message: "threshold or fill", or with "a " before each.
+std::string kinds_with_level(const std::string& article = "");
 // The place of the effect that has the level; model.size() if none has.
 std::size_t level_place(const EffectList& model);
 // 0 if no effect has it.

@@ -5,7 +5,7 @@
 
 #include <cstdlib>
 
-#include "driver/job/run_codec.h"
+#include "driver/viewer/run_codec.h"
 #include "slicer/stack/slice_stack.h"
 #include "tests/support/models.h"
 #include "tests/support/picture.h"

@@ -59,7 +59,7 @@ RunLayer patched(const RunLayer& mask, const RunLayer& with, std::span<const Rec
   }
   if (all.empty()) return mask;
   // What the patch leaves of an island or a hole may lie beside it.
-  const int most = rules.most();
+  const int most = rules.largest_px();
   const Rect mended = all.grown(most, most).cut(box);
   Plane<std::uint8_t> patch(all);
   add_layer(with, std::uint8_t{1}, patch);

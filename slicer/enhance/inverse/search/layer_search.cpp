@@ -54,7 +54,7 @@ LayerSearch::LayerSearch(const SearchModel& by, LayerWindow layers)
   reach_vx_ = one.voxel_rect();
   // Tiles at the box's edge ask for the mask beyond it.
   const Rect& masks = one.mask_rect();
-  const int rules = by_.rules.most();
+  const int rules = by_.rules.largest_px();
   mask_.reset(
       box_.grown(std::max({-masks.x0, masks.x1, rules}), std::max({-masks.y0, masks.y1, rules})),
       0);
@@ -98,7 +98,7 @@ void LayerSearch::search(std::span<Tile> tiles, const SearchStart* from_scratch)
   for (Tile& tile : tiles) look_over(tile, from_scratch);
   if (from_scratch != nullptr) {
     // What a tile leaves of an island or a hole may lie beside it.
-    const int most = by_.rules.most();
+    const int most = by_.rules.largest_px();
     for (const Tile& tile : tiles) {
       obey(by_.rules, tile.rect.grown(most, most).cut(box_), mask_);
     }

@@ -47,7 +47,7 @@ TEST(MaskRules, LeaveNothingThatIsTooSmall) {
     SCOPED_TRACE(round);
     const MaskRules rules{random.number(1, 7), random.number(1, 7)};
     const whole::Volume noise = random.volume(random.number(1, 20), random.number(1, 20), 1);
-    Plane<std::uint8_t> mask = plane_of(whole::slice(noise, 0), rules.most());
+    Plane<std::uint8_t> mask = plane_of(whole::slice(noise, 0), rules.largest_px());
     obey(rules, {0, 0, noise.nx, noise.ny}, mask);
     const MaskRegions found = whole::mask_regions(to_layer(mask, noise.nx, noise.ny));
     ASSERT_GE(found.smallest_island_px, rules.min_island_px);
@@ -64,7 +64,7 @@ TEST(MaskRules, LeaveAWholeMaskAsTheyLeaveItsPixels) {
     const MaskRules rules{random.number(1, 40), random.number(1, 40)};
     const whole::Volume noise = random.volume(random.number(1, 30), random.number(1, 30), 1);
     const RunLayer mask = whole::slice(noise, 0);
-    Plane<std::uint8_t> pixels = plane_of(mask, rules.most());
+    Plane<std::uint8_t> pixels = plane_of(mask, rules.largest_px());
     obey(rules, {0, 0, noise.nx, noise.ny}, pixels);
     const ObeyingMask obeying = obeying_mask(mask, rules);
     ASSERT_EQ(obeying.mask, to_layer(pixels, noise.nx, noise.ny));
@@ -94,7 +94,7 @@ TEST(MaskRules, CheckAroundAFlipSeesAllThatItCanBreak) {
     SCOPED_TRACE(round);
     const MaskRules rules{random.number(1, 5), random.number(1, 5)};
     const whole::Volume noise = random.volume(random.number(1, 12), random.number(1, 12), 1);
-    Plane<std::uint8_t> mask = plane_of(whole::slice(noise, 0), rules.most());
+    Plane<std::uint8_t> mask = plane_of(whole::slice(noise, 0), rules.largest_px());
     obey(rules, {0, 0, noise.nx, noise.ny}, mask);
     const int x = random.number(0, noise.nx - 1);
     const int y = random.number(0, noise.ny - 1);

@@ -65,7 +65,7 @@ TEST(MaskPatch, ObeysTheRulesEverywhereAndChangesNothingFarOff) {
     const MaskRegions found = mask_regions(out);
     ASSERT_GE(found.smallest_hole_px, rules.min_hole_px);
     ASSERT_GE(found.smallest_island_px, rules.min_island_px);
-    const std::array near{places[0].grown(2 * rules.most(), 2 * rules.most())};
+    const std::array near{places[0].grown(2 * rules.largest_px(), 2 * rules.largest_px())};
     ASSERT_EQ(without(out, within(out, near)), without(mask, within(mask, near)));
   }
 }

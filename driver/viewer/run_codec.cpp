@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "driver/job/run_codec.h"
+#include "driver/viewer/run_codec.h"
 
 #include <cstdint>
 
