@@ -17,6 +17,7 @@
 
 #include "driver/base/transport_errors.h"
 #include "driver/job/encoded_layers.h"
+#include "driver/job/job_masks.h"
 #include "driver/job/layer_queue.h"
 #include "driver/job/parts.h"
 #include "driver/job/slice_plan.h"

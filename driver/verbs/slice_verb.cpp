@@ -9,6 +9,7 @@
 
 #include "driver/base/transport_errors.h"
 #include "driver/job/encoded_layers.h"
+#include "driver/job/estimate.h"
 #include "driver/job/slice_plan.h"
 #include "driver/verbs/verbs.h"
 #include "transport/job/job_file.h"

@@ -10,6 +10,8 @@
 
 #include "driver/job/mask_source.h"
 #include "slicer/coupon/coupon.h"
+#include "slicer/enhance/masks.h"
+#include "slicer/model/printer_model.h"
 #include "slicer/stack/png.h"
 #include "tests/support/picture.h"
 #include "tests/support/program.h"

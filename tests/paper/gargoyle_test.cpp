@@ -10,6 +10,8 @@
 #include <optional>
 
 #include "driver/job/parts.h"
+#include "slicer/enhance/masks.h"
+#include "slicer/model/printer_model.h"
 #include "slicer/score/score.h"
 #include "tests/paper/relief.h"
 #include "tests/support/vector_stream.h"

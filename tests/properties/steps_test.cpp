@@ -12,6 +12,7 @@
 #include <string>
 #include <vector>
 
+#include "driver/job/encoded_layers.h"
 #include "driver/job/job_masks.h"
 #include "driver/job/print_stream.h"
 #include "driver/job/slice_plan.h"

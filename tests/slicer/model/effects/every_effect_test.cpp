@@ -8,6 +8,7 @@
 
 #include "slicer/layers/stream.h"
 #include "slicer/model/effects/candidates.h"
+#include "slicer/model/print_masks.h"
 #include "tests/hidden_printers/hidden_printer.h"
 #include "tests/support/examples.h"
 #include "tests/support/random.h"
