@@ -48,7 +48,7 @@ cp "$here/init" "$root/init"
 cp "$@" "$root/"
 
 cp /lib/udev/rules.d/50-udev-default.rules "$root/lib/udev/rules.d/"
-cp "$here/../../../udev/60-binderjet.rules" "$root/lib/udev/rules.d/"
+cp "$here/../../../../udev/60-binderjet.rules" "$root/lib/udev/rules.d/"
 # udevd skips a rule whose group nobody knows. One user is in lp, one is not.
 number=900
 {
