@@ -18,7 +18,7 @@ namespace {
 using Json = nlohmann::ordered_json;
 using html::Series;
 
-std::string mm(double value) { return fmt::format("{:.3f}", value); }
+std::string thousandths(double value) { return fmt::format("{:.3f}", value); }
 
 const Rung* last_accepted(const Ladder& ladder) {
   const Rung* last = nullptr;
@@ -104,19 +104,20 @@ std::string verdict(const LengthFindings& found) {
   return fmt::format(
       "Parts are off by {} mm (rms; median {}). {} bring{} that to {} mm (median {}) on parts that "
       "the fit did not see; readings of one dimension of one part scatter by {} mm.",
-      mm(ladder.rms_without), mm(ladder.median_without), fmt::join(names, ", "),
-      names.size() == 1 ? "s" : "", mm(last->rms), mm(last->median), mm(found.floor_rms));
+      thousandths(ladder.rms_without), thousandths(ladder.median_without), fmt::join(names, ", "),
+      names.size() == 1 ? "s" : "", thousandths(last->rms), thousandths(last->median),
+      thousandths(found.floor_rms));
 }
 
 std::vector<std::vector<std::string>> ladder_rows(const Ladder& ladder) {
   std::vector<std::vector<std::string>> rows = {
       {"model", "form", "verdict", "numbers", "rms, mm", "median, mm", "t", "p"}};
-  rows.push_back(
-      {"nominal lengths", "", "", "0", mm(ladder.rms_without), mm(ladder.median_without), "", ""});
+  rows.push_back({"nominal lengths", "", "", "0", thousandths(ladder.rms_without),
+                  thousandths(ladder.median_without), "", ""});
   for (const Rung& rung : ladder.rungs) {
     rows.push_back({"+ " + rung.name, rung.form, rung.accepted ? "kept" : "rejected",
-                    std::to_string(rung.parameters), mm(rung.rms), mm(rung.median),
-                    fmt::format("{:.1f}", rung.t),
+                    std::to_string(rung.parameters), thousandths(rung.rms),
+                    thousandths(rung.median), fmt::format("{:.1f}", rung.t),
                     rung.p < 0.001 ? "< 0.001" : fmt::format("{:.3f}", rung.p)});
   }
   return rows;
@@ -129,7 +130,7 @@ std::vector<std::vector<std::string>> coefficient_rows(const Ladder& ladder) {
     const auto at = static_cast<Eigen::Index>(i);
     rows.push_back({ladder.columns[i].term, ladder.columns[i].name,
                     fmt::format("{:+.3f}", ladder.coefficients[at]),
-                    mm(ladder.standard_errors[at])});
+                    thousandths(ladder.standard_errors[at])});
   }
   return rows;
 }
@@ -139,7 +140,7 @@ std::vector<std::vector<std::string>> growth_rows(const LengthFindings& found) {
       {"batch", "better", "as offset, mm", "as scale, mm"}};
   for (const BatchGrowth& batch : found.growth) {
     rows.push_back({batch.batch, batch.offset_rms < batch.scale_rms ? "offset" : "scale",
-                    mm(batch.offset_rms), mm(batch.scale_rms)});
+                    thousandths(batch.offset_rms), thousandths(batch.scale_rms)});
   }
   return rows;
 }
@@ -215,14 +216,16 @@ std::string page_of(const LengthFindings& found, const GaugeTable& table) {
                         fmt::format("<p>{} rows, {} used.</p>\n", found.rows, found.used_rows) +
                             (dropped.empty() ? "" : "<ul>\n" + dropped + "</ul>\n"));
   std::vector<html::BarGroup> groups = {
-      {"rms", {{Series::kBefore, ladder.rms_without, mm(ladder.rms_without) + " mm"}}},
-      {"median", {{Series::kBefore, ladder.median_without, mm(ladder.median_without) + " mm"}}}};
+      {"rms", {{Series::kBefore, ladder.rms_without, thousandths(ladder.rms_without) + " mm"}}},
+      {"median",
+       {{Series::kBefore, ladder.median_without, thousandths(ladder.median_without) + " mm"}}}};
   if (last != nullptr) {
-    groups[0].bars.push_back({Series::kAfter, last->rms, mm(last->rms) + " mm"});
-    groups[1].bars.push_back({Series::kAfter, last->median, mm(last->median) + " mm"});
+    groups[0].bars.push_back({Series::kAfter, last->rms, thousandths(last->rms) + " mm"});
+    groups[1].bars.push_back({Series::kAfter, last->median, thousandths(last->median) + " mm"});
   }
   if (found.floor_rms > 0) {
-    groups[0].bars.push_back({Series::kFloor, found.floor_rms, mm(found.floor_rms) + " mm"});
+    groups[0].bars.push_back(
+        {Series::kFloor, found.floor_rms, thousandths(found.floor_rms) + " mm"});
   }
   body +=
       html::section("The error, before and after",

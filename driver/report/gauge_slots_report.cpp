@@ -15,7 +15,7 @@ namespace {
 using Json = nlohmann::ordered_json;
 using html::Series;
 
-std::string mm(double value) { return fmt::format("{:.2f}", value); }
+std::string hundredths(double value) { return fmt::format("{:.2f}", value); }
 
 // The explanations that agree as well as the first: this gauge cannot tell them apart.
 std::vector<Explanation> rivals_of(const SlotFindings& found) {
@@ -38,7 +38,7 @@ std::string verdict(const SlotFindings& found) {
     return "The declared model misses the gauges, and no single number of it mends that.";
   }
   std::string text =
-      fmt::format("The declared model is off by {} mm (rms). ", mm(found.declared_rms_mm)) +
+      fmt::format("The declared model is off by {} mm (rms). ", hundredths(found.declared_rms_mm)) +
       "It agrees with every gauge if " + found.explanations.front().text;
   for (const Explanation& rival : rivals_of(found)) text += "; or if " + rival.text;
   return text + (rivals_of(found).empty() ? "." : ". These gauges cannot tell which.");
@@ -50,9 +50,9 @@ std::string tell_apart_text(const SlotFindings& found) {
   return fmt::format(
       "To tell: print a {}. It comes out {} mm wide in the first case and {} in the second, {} mm "
       "apart.",
-      best.gauge, mm(best.predicted_mm[0]),
-      best.predicted_mm[1] > 0 ? mm(best.predicted_mm[1]) + " mm" : "not at all",
-      mm(best.difference_mm));
+      best.gauge, hundredths(best.predicted_mm[0]),
+      best.predicted_mm[1] > 0 ? hundredths(best.predicted_mm[1]) + " mm" : "not at all",
+      hundredths(best.difference_mm));
 }
 
 Json to_json(const SlotFindings& found) {
@@ -118,10 +118,10 @@ std::string readings_table(const SlotFindings& found) {
   for (std::size_t i = 0; i < found.readings.size(); ++i) {
     const GaugeReading& r = found.readings[i];
     rows.push_back({r.name, fmt::format("{:.2f} \u00b1 {:.2f}", r.measured_mm, r.uncertainty_mm),
-                    mm(found.declared_mm[i]),
+                    hundredths(found.declared_mm[i]),
                     fmt::format("{:+.2f}", r.measured_mm - found.declared_mm[i])});
     for (const Explanation& e : found.explanations) {
-      rows.back().push_back(mm(e.predicted_mm[i]));
+      rows.back().push_back(hundredths(e.predicted_mm[i]));
       rows.back().push_back(fmt::format("{:+.2f}", r.measured_mm - e.predicted_mm[i]));
     }
   }
@@ -132,7 +132,8 @@ std::string apart_table(const SlotFindings& found) {
   std::vector<std::vector<std::string>> rows = {
       {"gauge to print", found.explanations[0].kind, found.explanations[1].kind, "apart, mm"}};
   for (const Discriminator& d : found.discriminators) {
-    rows.push_back({d.gauge, mm(d.predicted_mm[0]), mm(d.predicted_mm[1]), mm(d.difference_mm)});
+    rows.push_back({d.gauge, hundredths(d.predicted_mm[0]), hundredths(d.predicted_mm[1]),
+                    hundredths(d.difference_mm)});
   }
   return html::table(rows, 1);
 }
@@ -144,10 +145,11 @@ std::string page_of(const SlotFindings& found, const GaugeTable& table,
                      "</p></section>\n";
   html::BarGroup bars{
       "rms over the gauges",
-      {{Series::kBefore, found.declared_rms_mm, mm(found.declared_rms_mm) + " mm"}}};
+      {{Series::kBefore, found.declared_rms_mm, hundredths(found.declared_rms_mm) + " mm"}}};
   if (!found.explanations.empty()) {
     const Explanation& first = found.explanations.front();
-    bars.bars.push_back({Series::kAfter, first.heldout_rms_mm, mm(first.heldout_rms_mm) + " mm"});
+    bars.bars.push_back(
+        {Series::kAfter, first.heldout_rms_mm, hundredths(first.heldout_rms_mm) + " mm"});
   }
   body += html::section(
       "The error, before and after",
@@ -181,15 +183,15 @@ GaugeSummary summarize(const SlotFindings& found, const GaugeTable& table,
   for (std::size_t i = 0; i < found.readings.size(); ++i) {
     const GaugeReading& r = found.readings[i];
     text += fmt::format("\n{}: measured {} +- {} mm, declared model {}, residual {:+.2f}", r.name,
-                        mm(r.measured_mm), mm(r.uncertainty_mm), mm(found.declared_mm[i]),
-                        r.measured_mm - found.declared_mm[i]);
+                        hundredths(r.measured_mm), hundredths(r.uncertainty_mm),
+                        hundredths(found.declared_mm[i]), r.measured_mm - found.declared_mm[i]);
     if (!found.explanations.empty()) {
       text += fmt::format(", after {:+.2f}", r.measured_mm - found.explanations[0].predicted_mm[i]);
     }
   }
   for (const Explanation& e : found.explanations) {
     text += fmt::format("\n{}: {} ({}), rms {} mm, held out {} mm", e.kind, e.text, range(e),
-                        mm(e.rms_mm), mm(e.heldout_rms_mm));
+                        hundredths(e.rms_mm), hundredths(e.heldout_rms_mm));
   }
   const std::string apart = tell_apart_text(found);
   if (!apart.empty()) text += "\n" + apart;

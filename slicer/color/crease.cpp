@@ -25,9 +25,9 @@
 namespace binderjet {
 namespace {
 
-using Kernel = CGAL::Simple_cartesian<double>;
-using Place = Kernel::Point_3;
-using Vector = Kernel::Vector_3;
+using CgalKernel = CGAL::Simple_cartesian<double>;
+using Place = CgalKernel::Point_3;
+using Vector = CgalKernel::Vector_3;
 
 // More would cost minutes and show nothing: on a part as large as the bed these are 0.6 mm apart.
 constexpr double kMaxSamples = 300'000;
@@ -106,7 +106,7 @@ double occlusion(const TriangleTree& tree, const Place& place, const Vector& n, 
     const double length = radius_mm * (0.1 + 0.9 * static_cast<double>(i * 13 % kDirections) /
                                                  static_cast<double>(kDirections));
     const Vector ray = s * d.x() + t * d.y() + n * d.z();
-    if (tree.do_intersect(Kernel::Segment_3(from, from + ray * length))) ++hits;
+    if (tree.do_intersect(CgalKernel::Segment_3(from, from + ray * length))) ++hits;
   }
   return static_cast<double>(hits) / kDirections;
 }
@@ -160,7 +160,7 @@ std::shared_ptr<const ColorField> crease_field(std::shared_ptr<const ColorField>
   const Samples samples = sample(mesh, radius_mm / 8);
 
   using Map = CGAL::Pointer_property_map<Place>::const_type;
-  using Traits = CGAL::Search_traits_adapter<std::size_t, Map, CGAL::Search_traits_3<Kernel>>;
+  using Traits = CGAL::Search_traits_adapter<std::size_t, Map, CGAL::Search_traits_3<CgalKernel>>;
   using Search = CGAL::Orthogonal_k_neighbor_search<Traits>;
   const Map map = CGAL::make_property_map(samples.places);
   std::vector<std::size_t> indices(samples.places.size());

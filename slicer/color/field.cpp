@@ -16,10 +16,11 @@
 namespace binderjet {
 namespace {
 
-using Kernel = CGAL::Simple_cartesian<double>;
-using Place = Kernel::Point_3;
+using CgalKernel = CGAL::Simple_cartesian<double>;
+using Place = CgalKernel::Point_3;
 using PlaceMap = CGAL::Pointer_property_map<Place>::const_type;
-using Traits = CGAL::Search_traits_adapter<std::size_t, PlaceMap, CGAL::Search_traits_3<Kernel>>;
+using Traits =
+    CGAL::Search_traits_adapter<std::size_t, PlaceMap, CGAL::Search_traits_3<CgalKernel>>;
 using Search = CGAL::Orthogonal_k_neighbor_search<Traits>;
 
 class SampleField : public ColorField {

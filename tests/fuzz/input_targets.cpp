@@ -25,10 +25,6 @@
 namespace binderjet {
 namespace {
 
-void require(bool right) {
-  if (!right) std::abort();
-}
-
 std::string text_of(const std::uint8_t* data, std::size_t size) {
   return {reinterpret_cast<const char*>(data), size};
 }

@@ -23,10 +23,6 @@ using protocol::FrameDecoder;
 
 constexpr std::size_t kBound = 4096;
 
-void require(bool right) {
-  if (!right) std::abort();
-}
-
 std::span<const std::byte> bytes_of(const std::uint8_t* data, std::size_t size) {
   return std::as_bytes(std::span(data, size));
 }

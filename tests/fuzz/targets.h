@@ -4,8 +4,13 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <cstdlib>
 
 namespace binderjet {
+
+inline void require(bool right) {
+  if (!right) std::abort();
+}
 
 // Each aborts if a decoder breaks its word.
 void fuzz_frames(const std::uint8_t* data, std::size_t size);

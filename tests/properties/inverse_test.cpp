@@ -21,7 +21,7 @@ namespace {
 using whole::Random;
 using whole::Volume;
 
-struct Case {
+struct InverseCase {
   Grid grid;
   Volume target{0, 0, 0};
   MaskRules rules;
@@ -31,8 +31,8 @@ struct Case {
   const PrinterModel& model() const { return window.front(); }
 };
 
-Case random_case(Random& random, bool with_rules) {
-  Case c;
+InverseCase random_inverse_case(Random& random, bool with_rules) {
+  InverseCase c;
   c.grid = random.grid();
   c.layers = random.number(1, 5);
   c.target =
@@ -43,7 +43,7 @@ Case random_case(Random& random, bool with_rules) {
   return c;
 }
 
-Volume streamed(const Case& c, LayerRange layers, int block) {
+Volume streamed_inverse(const InverseCase& c, LayerRange layers, int block) {
   const auto solver = std::make_shared<const InverseSolver>(c.window, c.grid, c.rules);
   const auto stream =
       inverse_masks(whole::voxel_layers(c.target, c.grid.detail_vx[2]), solver).layers(layers);
@@ -57,7 +57,7 @@ Volume streamed(const Case& c, LayerRange layers, int block) {
 }
 
 // How many voxels of each layer come out wrong.
-std::vector<std::int64_t> wrong(const Case& c, const Volume& masks) {
+std::vector<std::int64_t> wrong(const InverseCase& c, const Volume& masks) {
   const Volume printed = whole::print(masks, c.model().form(), c.grid);
   const auto target =
       whole::voxel_stream(c.target, c.grid.detail_vx[2], {0, c.layers})->next(c.layers);
@@ -71,7 +71,7 @@ std::vector<std::int64_t> wrong(const Case& c, const Volume& masks) {
 }
 
 // The same by the streaming engine, for what the place on the bed does.
-std::vector<std::int64_t> wrong_in_place(const Case& c, const Volume& masks) {
+std::vector<std::int64_t> wrong_in_place(const InverseCase& c, const Volume& masks) {
   const PrinterModel& model = c.model();
   const auto target =
       whole::voxel_stream(c.target, c.grid.detail_vx[2], {0, c.layers})->next(c.layers);
@@ -97,16 +97,16 @@ TEST(Inverse, NeverPrintsALayerWorseThanPlainMasks) {
   Random random;
   for (int round = 0; round < 60; ++round) {
     SCOPED_TRACE(round);
-    const Case c = random_case(random, false);
+    const InverseCase c = random_inverse_case(random, false);
     const auto plain = wrong(c, whole::masks(c.target, c.grid));
-    const auto inverse = wrong(c, streamed(c, {0, c.layers}, kBlockLayers));
+    const auto inverse = wrong(c, streamed_inverse(c, {0, c.layers}, kBlockLayers));
     for (std::size_t k = 0; k < plain.size(); ++k) ASSERT_LE(inverse[k], plain[k]) << "layer " << k;
   }
 }
 
 // A small relief with a slot, a pin and a step, in the middle of its box.
-Case in_place(Random& random, const EffectSpec& effect) {
-  Case c;
+InverseCase in_place(Random& random, const EffectSpec& effect) {
+  InverseCase c;
   c.grid = {{0.1, 0.08, 0.1}, {2, 2, 2}};
   c.layers = 6;
   c.target = Volume(80, 80, 12);
@@ -131,11 +131,11 @@ TEST(Inverse, AnswersEveryEffectAndPrintsNoLayerWorse) {
   std::int64_t all_inverse = 0;
   for (const EffectSpec& effect : whole::examples_beside_a_level()) {
     SCOPED_TRACE(effect.kind);
-    const Case c = in_place(random, effect);
+    const InverseCase c = in_place(random, effect);
     // What wears off is beyond the search.
     if (!c.model().form().wear.empty()) continue;
     const auto plain = wrong_in_place(c, whole::masks(c.target, c.grid));
-    const auto inverse = wrong_in_place(c, streamed(c, {0, c.layers}, kBlockLayers));
+    const auto inverse = wrong_in_place(c, streamed_inverse(c, {0, c.layers}, kBlockLayers));
     for (std::size_t k = 0; k < plain.size(); ++k) EXPECT_LE(inverse[k], plain[k]) << "layer " << k;
     std::cout << effect.kind << ": wrong voxels " << sum(plain) << " plain, " << sum(inverse)
               << " inverse\n";
@@ -154,8 +154,8 @@ TEST(Inverse, KeepsToTheMaskRules) {
   Random random;
   for (int round = 0; round < 60; ++round) {
     SCOPED_TRACE(round);
-    const Case c = random_case(random, true);
-    const Volume masks = streamed(c, {0, c.layers}, kBlockLayers);
+    const InverseCase c = random_inverse_case(random, true);
+    const Volume masks = streamed_inverse(c, {0, c.layers}, kBlockLayers);
     for (int k = 0; k < c.layers; ++k) {
       const MaskRegions found = whole::mask_regions(whole::slice(masks, k));
       ASSERT_GE(found.smallest_island_px, c.rules.min_island_px) << "layer " << k;
@@ -168,21 +168,21 @@ TEST(Inverse, GivesTheSameInPiecesBlocksAndWithOneThread) {
   Random random;
   for (int round = 0; round < 30; ++round) {
     SCOPED_TRACE(round);
-    const Case c = random_case(random, true);
-    const Volume all = streamed(c, {0, c.layers}, kBlockLayers);
+    const InverseCase c = random_inverse_case(random, true);
+    const Volume all = streamed_inverse(c, {0, c.layers}, kBlockLayers);
     const int first = random.number(0, c.layers - 1);
-    const Volume piece = streamed(c, {first, c.layers}, 2);
+    const Volume piece = streamed_inverse(c, {first, c.layers}, 2);
     for (int k = first; k < c.layers; ++k) {
       ASSERT_EQ(whole::slice(piece, k - first), whole::slice(all, k));
     }
     const oneapi::tbb::global_control one(oneapi::tbb::global_control::max_allowed_parallelism, 1);
-    ASSERT_EQ(streamed(c, {0, c.layers}, random.number(1, 4)), all);
+    ASSERT_EQ(streamed_inverse(c, {0, c.layers}, random.number(1, 4)), all);
   }
 }
 
 // A slab with a slot, a pin and a step: what the binder closes, loses and rounds.
-Case relief(double level) {
-  Case c;
+InverseCase relief(double level) {
+  InverseCase c;
   c.grid = {{0.1, 0.1, 0.1}, {2, 2, 2}};
   c.layers = 6;
   c.target = Volume(120, 120, 12);
@@ -198,10 +198,10 @@ Case relief(double level) {
 }
 
 TEST(Inverse, PrintsATenthOfThePlainErrorAtALowLevel) {
-  const Case c = relief(0.25);
+  const InverseCase c = relief(0.25);
   const auto plain = sum(wrong(c, whole::masks(c.target, c.grid)));
   const auto paper = sum(wrong(c, whole::paper_masks(c.target, c.model().form(), c.grid, 2)));
-  const auto inverse = sum(wrong(c, streamed(c, {0, c.layers}, kBlockLayers)));
+  const auto inverse = sum(wrong(c, streamed_inverse(c, {0, c.layers}, kBlockLayers)));
   std::cout << "wrong voxels: plain " << plain << ", paper " << paper << ", inverse " << inverse
             << '\n';
   EXPECT_LE(10 * inverse, plain);
@@ -210,8 +210,8 @@ TEST(Inverse, PrintsATenthOfThePlainErrorAtALowLevel) {
 
 // A base with spires as narrow as a voxel at their tips and a thin wall that leans over: all
 // narrower than the spread.
-Case spires(double level) {
-  Case c;
+InverseCase spires(double level) {
+  InverseCase c;
   c.grid = {{0.1, 0.1, 0.1}, {2, 2, 2}};
   c.layers = 12;
   c.target = Volume(120, 120, 24);
@@ -232,8 +232,8 @@ Case spires(double level) {
 TEST(Inverse, PrintsWhatIsNarrowerThanTheSpreadAndInOnePiece) {
   for (const double level : {0.25, 0.5}) {
     SCOPED_TRACE(level);
-    const Case c = spires(level);
-    const Volume masks = streamed(c, {0, c.layers}, kBlockLayers);
+    const InverseCase c = spires(level);
+    const Volume masks = streamed_inverse(c, {0, c.layers}, kBlockLayers);
     const Volume printed = whole::print(masks, c.model().form(), c.grid);
     const JobScore score = whole::score(c.target, printed, c.grid).score;
     EXPECT_EQ(score.faults[FaultKind::kLoose], 0);
@@ -244,7 +244,7 @@ TEST(Inverse, PrintsWhatIsNarrowerThanTheSpreadAndInOnePiece) {
 
 // Leaning spires over several of the blocks in which layers are mended.
 TEST(Inverse, GivesTheSameInPiecesOfATallJob) {
-  Case c;
+  InverseCase c;
   c.grid = {{0.1, 0.1, 0.1}, {2, 2, 2}};
   c.layers = 60;
   c.target = Volume(60, 40, 2 * c.layers);
@@ -256,9 +256,9 @@ TEST(Inverse, GivesTheSameInPiecesOfATallJob) {
                             {"threshold", {}, {{"level", {0.4}}}}},
                            c.grid)};
   c.rules = {4, 4};
-  const Volume all = streamed(c, {0, c.layers}, kBlockLayers);
+  const Volume all = streamed_inverse(c, {0, c.layers}, kBlockLayers);
   for (const LayerRange piece : {LayerRange{0, 9}, LayerRange{21, 40}, LayerRange{59, 60}}) {
-    const Volume part = streamed(c, piece, 3);
+    const Volume part = streamed_inverse(c, piece, 3);
     for (int k = piece.first; k < piece.last; ++k) {
       ASSERT_EQ(whole::slice(part, k - piece.first), whole::slice(all, k)) << "layer " << k;
     }
@@ -267,7 +267,7 @@ TEST(Inverse, GivesTheSameInPiecesOfATallJob) {
 
 TEST(Inverse, AnswersBinderThatSoaksIntoTheLayersBelow) {
   // A calibrated profile's form: a share of each layer's binder reaches the two layers below.
-  Case c = relief(0.35);
+  InverseCase c = relief(0.35);
   for (PrinterModel& model : c.window) {
     AssembledModel form = model.form();
     const DoseTerm own = form.terms.front();
@@ -280,7 +280,7 @@ TEST(Inverse, AnswersBinderThatSoaksIntoTheLayersBelow) {
   }
   const auto plain = sum(wrong(c, whole::masks(c.target, c.grid)));
   const auto paper = sum(wrong(c, whole::paper_masks(c.target, c.model().form(), c.grid, 2)));
-  const auto inverse = sum(wrong(c, streamed(c, {0, c.layers}, kBlockLayers)));
+  const auto inverse = sum(wrong(c, streamed_inverse(c, {0, c.layers}, kBlockLayers)));
   std::cout << "wrong voxels: plain " << plain << ", paper " << paper << ", inverse " << inverse
             << '\n';
   EXPECT_LE(4 * inverse, plain);
@@ -288,13 +288,13 @@ TEST(Inverse, AnswersBinderThatSoaksIntoTheLayersBelow) {
 }
 
 TEST(Inverse, IsBetterThanThePaperOverTheProcessWindow) {
-  Case c = relief(0.25);
-  const Volume inverse = streamed(c, {0, c.layers}, kBlockLayers);
+  InverseCase c = relief(0.25);
+  const Volume inverse = streamed_inverse(c, {0, c.layers}, kBlockLayers);
   const Volume paper = whole::paper_masks(c.target, c.model().form(), c.grid, 2);
   std::int64_t worst_inverse = 0;
   std::int64_t worst_paper = 0;
   for (const PrinterModel& model : c.window) {
-    Case corner = c;
+    InverseCase corner = c;
     corner.window = {model};
     worst_inverse = std::max(worst_inverse, sum(wrong(corner, inverse)));
     worst_paper = std::max(worst_paper, sum(wrong(corner, paper)));

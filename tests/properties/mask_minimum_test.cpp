@@ -70,11 +70,13 @@ TEST_P(MaskMinimum, ChangesAsMuchAsItSays) {
   } else {
     EXPECT_EQ(sliced.tally.layers, changed);
   }
-  if (header_.enhance == Enhancement::kPaper) EXPECT_GT(changed, 0) << "or this test shows nothing";
+  if (header_.enhance == Enhancement::kPaper) {
+    EXPECT_GT(changed, 0) << "or this test shows nothing";
+  }
 }
 
 INSTANTIATE_TEST_SUITE_P(Ways, MaskMinimum, testing::ValuesIn(kEnhancements),
-                         [](const auto& info) { return std::string(word(info.param)); });
+                         [](const auto& way) { return std::string(word(way.param)); });
 
 TEST(MaskMinimumWarning, SaysWhatWasErasedAndFilledAndWhere) {
   const MaskRules rules{4, 5};

@@ -60,9 +60,11 @@ TEST_F(BusySpool, StaysQuickAndRightWithAThousandJobs) {
     if (leaves) continue;
     ASSERT_TRUE(backend->end());
   }
+  // In starts of the program, which every machine and sanitizer has at its own price.
+  const double quick_seconds = 4 * here_.run({"--version"}).cpu_seconds;
   const Ran ran = here_.run({"status", "--to", uri_, "--json"});
   ASSERT_EQ(ran.status, 0) << ran.err;
-  EXPECT_LT(ran.cpu_seconds, 1);
+  EXPECT_LT(ran.cpu_seconds, quick_seconds);
   const auto jobs = ran.json()["jobs"];
   ASSERT_EQ(jobs.size(), kJobs);
   for (int job = 0; job < kJobs; ++job) {
@@ -74,7 +76,7 @@ TEST_F(BusySpool, StaysQuickAndRightWithAThousandJobs) {
   }
   const Ran one = here_.run({"status", "700", "--to", uri_, "--json"});
   EXPECT_EQ(one.json()["state"], "held");
-  EXPECT_LT(one.cpu_seconds, 1);
+  EXPECT_LT(one.cpu_seconds, quick_seconds);
   const Ran cancelled = here_.run({"cancel", "700", "--to", uri_});
   EXPECT_EQ(cancelled.status, 0) << cancelled.err;
   EXPECT_EQ(status().size(), kJobs - 1);

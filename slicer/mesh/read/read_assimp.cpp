@@ -52,9 +52,9 @@ class OwnFolder : public Assimp::DefaultIOSystem {
   std::string model_;
 };
 
-class SceneReader {
+class AssimpReader {
  public:
-  SceneReader(const aiScene& scene, const std::string& path, const std::string& name)
+  AssimpReader(const aiScene& scene, const std::string& path, const std::string& name)
       : scene_(scene), path_(path), name_(name) {
     for (unsigned i = 0; i < scene.mNumMaterials; ++i) take_material(*scene.mMaterials[i]);
     for (unsigned i = 0; i < scene.mNumMeshes; ++i) textured_ |= is_textured(*scene.mMeshes[i]);
@@ -265,7 +265,7 @@ MeshFile read_with_assimp(const std::string& path, const std::string& name) {
         ErrorKind::kBadInput, name,
         fmt::format("cannot be read ({}); export it again as STL, PLY, OBJ or 3MF", reason));
   }
-  MeshFile result = SceneReader(*scene, path, name).read();
+  MeshFile result = AssimpReader(*scene, path, name).read();
   if (dot == ".gltf" || dot == ".glb") {
     result.warnings.push_back(
         "glTF is in meters and y-up by its specification, but is read as it is: one unit is 1 mm "

@@ -79,9 +79,9 @@ bool includes_files(std::string_view text) {
   return false;
 }
 
-class SceneReader {
+class WrlReader {
  public:
-  explicit SceneReader(const std::string& path) : path_(path) {}
+  explicit WrlReader(const std::string& path) : path_(path) {}
 
   // What Coin would not have survived, or empty; nothing was read behind it.
   const std::string& broken() const { return broken_; }
@@ -101,11 +101,11 @@ class SceneReader {
   }
 
  private:
-  static SceneReader& self(void* data) { return *static_cast<SceneReader*>(data); }
+  static WrlReader& self(void* data) { return *static_cast<WrlReader*>(data); }
 
   static SoCallbackAction::Response enter_shape(void* data, SoCallbackAction*, const SoNode* node) {
     const auto* shape = static_cast<const SoVRMLShape*>(node);
-    SceneReader& reader = self(data);
+    WrlReader& reader = self(data);
     reader.image_ = -1;
     reader.missing_ = false;
     reader.broken_ = misplaced(*node);
@@ -176,7 +176,7 @@ class SceneReader {
 
   static SoCallbackAction::Response enter_old_shape(void* data, SoCallbackAction* action,
                                                     const SoNode* node) {
-    SceneReader& reader = self(data);
+    WrlReader& reader = self(data);
     reader.broken_ = misplaced(*node);
     if (!reader.broken_.empty()) return SoCallbackAction::ABORT;
     if (!has_its_points(*action, *node)) {
@@ -196,7 +196,7 @@ class SceneReader {
   static SoCallbackAction::Response meet_texture(void* data, SoCallbackAction*,
                                                  const SoNode* node) {
     const auto* texture = static_cast<const SoTexture2*>(node);
-    SceneReader& reader = self(data);
+    WrlReader& reader = self(data);
     reader.image_ = -1;
     reader.missing_ = false;
     const std::string name = texture->filename.getValue().getString();
@@ -216,7 +216,7 @@ class SceneReader {
     return SoCallbackAction::CONTINUE;
   }
   static SoCallbackAction::Response leave_separator(void* data, SoCallbackAction*, const SoNode*) {
-    SceneReader& reader = self(data);
+    WrlReader& reader = self(data);
     if (reader.outer_.empty()) return SoCallbackAction::CONTINUE;
     std::tie(reader.image_, reader.missing_) = reader.outer_.back();
     reader.outer_.pop_back();
@@ -362,7 +362,7 @@ MeshFile read_wrl(InputFile& file, const std::string& path) {
                             fault.empty() ? "no reason given" : fault));
   }
   root->ref();
-  SceneReader reader(path);
+  WrlReader reader(path);
   MeshFile result = reader.read(*root);
   root->unref();
   if (!reader.broken().empty()) {

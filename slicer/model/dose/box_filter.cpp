@@ -32,9 +32,10 @@ void shares_of(int y, int repeat, int rows, const BoxWeights& weights,
 }
 
 // Writes the rows of the result, one voxel row after the other.
-class RowBuilder {
+class BoxRowBuilder {
  public:
-  RowBuilder(const RunLayer& in, int repeat, const BoxWeights& x, std::int64_t least, RunLayer& out)
+  BoxRowBuilder(const RunLayer& in, int repeat, const BoxWeights& x, std::int64_t least,
+                RunLayer& out)
       : in_(in), repeat_(repeat), x_(x), least_(least), out_(out) {}
 
   void build(const std::vector<RowShare>& shares) {
@@ -241,7 +242,7 @@ RunLayer box_threshold(const RunLayer& in, std::array<int, 2> repeat, const BoxW
   const int height = in.height() * repeat[1];
   RunLayer out(in.width() * repeat[0]);
   out.reserve(height, in.flip_count() * static_cast<std::size_t>(repeat[1]));
-  RowBuilder builder(in, repeat[0], x, least, out);
+  BoxRowBuilder builder(in, repeat[0], x, least, out);
   std::vector<RowShare> shares;
   for (int row = 0; row < height; ++row) {
     shares_of(row, repeat[1], in.height(), y, shares);

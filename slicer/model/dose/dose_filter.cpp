@@ -138,10 +138,10 @@ class RowGain {
 };
 
 // Writes one row of the result while the dose is followed from left to right.
-class RowBuilder {
+class DoseRowBuilder {
  public:
-  RowBuilder(RunLayer& out, const std::vector<Kernel>& kernels, std::int64_t least,
-             const RowGain& gain)
+  DoseRowBuilder(RunLayer& out, const std::vector<Kernel>& kernels, std::int64_t least,
+                 const RowGain& gain)
       : out_(out), kernels_(kernels), least_(least), gain_(gain) {
     for (const Kernel& kernel : kernels) {
       first_ = std::min(first_, kernel.first);
@@ -254,7 +254,7 @@ RunLayer DoseFilter::operator()(const RunWindow& window, int layer) const {
   out.reserve(height, mask.flip_count() * static_cast<std::size_t>(repeat_[1]));
   const std::optional<DensityField> density = density_of(window, grid_, placed_);
   RowGain gain(grid_, place_, placed_, layer, density ? &*density : nullptr);
-  RowBuilder builder(out, x_, least_, gain);
+  DoseRowBuilder builder(out, x_, least_, gain);
   const ShiftedRamps shifted(grid_, place_, placed_);
   std::vector<Ramp> ramps;
   for (int y = 0; y < height; ++y) {

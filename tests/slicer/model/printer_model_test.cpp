@@ -4,12 +4,13 @@
 #include <gtest/gtest.h>
 
 #include "slicer/base/error.h"
+#include "tests/support/rows.h"
 
 namespace binderjet {
 namespace {
 
 // Voxels of 0.1 mm; a pixel is one voxel.
-const Grid kGrid{{0.1, 0.1, 0.1}, {1, 1, 1}};
+const Grid kWholePixels{{0.1, 0.1, 0.1}, {1, 1, 1}};
 
 EffectSpec spread(const std::string& shape, double x_mm, double y_mm) {
   return {"spread", {{"shape", shape}}, {{"width_mm", {x_mm, y_mm}}}};
@@ -25,14 +26,10 @@ RunLayer bars(const std::vector<int>& flips) {
   for (int y = 0; y < 30; ++y) layer.append_row(flips);
   return layer;
 }
-std::vector<int> middle_row(const RunLayer& layer) {
-  const auto row = layer.row(layer.height() / 2);
-  return {row.begin(), row.end()};
-}
 
 TEST(PrinterModelForm, FillsANarrowSlotAndKeepsAThinWallAtALowLevel) {
   // A slot of 2 in a block, and a wall of 2; the box is 5 wide.
-  const PrinterModel model({spread("box", 0.5, 0.1), level("fill", 0.25)}, kGrid);
+  const PrinterModel model({spread("box", 0.5, 0.1), level("fill", 0.25)}, kWholePixels);
   const auto row = middle_row(model.print(bars({5, 15, 17, 30, 40, 42})));
   // Blocks grow by (1/2 - 1/4) of 5 = 1.25 voxels on each side, of which whole ones count; the
   // wall's dose is 2/5.
@@ -43,17 +40,17 @@ TEST(PrinterModelForm, BrushesOffWhatIsTooThinToSurvive) {
   // The same, and nothing thinner than 0.5 mm in x survives: the slot is filled *and* the wall is
   // gone, which no single level gives.
   const PrinterModel model({spread("box", 0.5, 0.1), level("fill", 0.25), survive(0.5, 0.1)},
-                           kGrid);
+                           kWholePixels);
   EXPECT_EQ(middle_row(model.print(bars({5, 15, 17, 30, 40, 42}))), (std::vector<int>{4, 31}));
 }
 
 TEST(PrinterModelForm, KeepsWhatIsJustAsWideAsItMustBeToSurvive) {
-  const PrinterModel model({level("fill", 0.5), survive(0.3, 0.1)}, kGrid);
+  const PrinterModel model({level("fill", 0.5), survive(0.3, 0.1)}, kWholePixels);
   EXPECT_EQ(middle_row(model.print(bars({5, 8, 20, 22}))), (std::vector<int>{5, 8}));
 }
 
 TEST(PrinterModelForm, MovesNoStraightEdgeWithAGaussianAtHalf) {
-  const PrinterModel model({spread("gaussian", 0.7, 0.3), level("threshold", 0.5)}, kGrid);
+  const PrinterModel model({spread("gaussian", 0.7, 0.3), level("threshold", 0.5)}, kWholePixels);
   // The cut tails take 2^-12 of the dose, the same inside and outside.
   EXPECT_EQ(middle_row(model.print(bars({15, 45}))), (std::vector<int>{15, 45}));
 }
@@ -62,7 +59,7 @@ TEST(PrinterModelForm, FillsMoreWithAGaussianThanWithABoxAsWide) {
   // At 1/2 a slot stays open if more than half of the kernel fits into it: half the width of a box,
   // but 0.573 of the width of a gaussian (1.349 sigma of 2.355), which has tails.
   const auto open = [](const std::string& shape, int slot) {
-    const PrinterModel model({spread(shape, 1.1, 0.1), level("threshold", 0.5)}, kGrid);
+    const PrinterModel model({spread(shape, 1.1, 0.1), level("threshold", 0.5)}, kWholePixels);
     return middle_row(model.print(bars({5, 30, 30 + slot, 55}))).size() == 4;
   };
   EXPECT_FALSE(open("box", 5));
@@ -76,7 +73,7 @@ TEST(PrinterModelForm, BindsTheLayerBelowThroughATermThatReachesThere) {
   AssembledModel form;
   form.level = 0.5;
   form.terms.push_back({1, {}, {}, 0.5});
-  const PrinterModel model(form, kGrid);
+  const PrinterModel model(form, kWholePixels);
   EXPECT_EQ(model.reach().layers_above, 1);
   EXPECT_EQ(model.reach().layers_below, 0);
   EXPECT_EQ(model.window_reach(), 1);
@@ -88,13 +85,14 @@ TEST(PrinterModelForm, BindsTheLayerBelowThroughATermThatReachesThere) {
 }
 
 TEST(PrinterModelForm, AddsUpWhatItsEffectsReach) {
-  const PrinterModel model({spread("box", 0.7, 0.3), level("fill", 0.5), survive(0.2, 0.4)}, kGrid);
+  const PrinterModel model({spread("box", 0.7, 0.3), level("fill", 0.5), survive(0.2, 0.4)},
+                           kWholePixels);
   EXPECT_EQ(model.reach().xy_vx, (std::array<int, 2>{3 + 1, 1 + 3}));
 }
 
 TEST(PrinterModelForm, RefusesTwoLevelsAndNone) {
-  EXPECT_THROW(PrinterModel({level("fill", 0.5), level("threshold", 0.5)}, kGrid), Error);
-  EXPECT_THROW(PrinterModel({spread("box", 0.7, 0.3)}, kGrid), Error);
+  EXPECT_THROW(PrinterModel({level("fill", 0.5), level("threshold", 0.5)}, kWholePixels), Error);
+  EXPECT_THROW(PrinterModel({spread("box", 0.7, 0.3)}, kWholePixels), Error);
 }
 
 TEST(DoseFilter, AgreesWithTheBoxFilterOnABox) {

@@ -10,7 +10,7 @@
 namespace binderjet {
 namespace {
 
-const Grid kGrid{{0.1, 0.1, 0.1}, {2, 2, 2}};
+const Grid kHalfPixels{{0.1, 0.1, 0.1}, {2, 2, 2}};
 
 EffectSpec spread(double width_mm) {
   return {"spread", {{"shape", "box"}}, {{"width_mm", {width_mm, width_mm}}}};
@@ -18,7 +18,7 @@ EffectSpec spread(double width_mm) {
 EffectSpec threshold(double level) { return {"threshold", {}, {{"level", {level}}}}; }
 
 TEST(ProcessWindow, IsTheModelAndSpreadTenPercentAndLevelAFiveHundredthOff) {
-  const auto models = process_window({spread(1), threshold(0.25)}, kGrid);
+  const auto models = process_window({spread(1), threshold(0.25)}, kHalfPixels);
   ASSERT_EQ(models.size(), 5U);
   EXPECT_EQ(models.front().form().level, 0.25);
   std::set<std::pair<int, int>> corners;  // level in 1/100, kernel reach
@@ -31,7 +31,7 @@ TEST(ProcessWindow, IsTheModelAndSpreadTenPercentAndLevelAFiveHundredthOff) {
 }
 
 TEST(ProcessWindow, StaysWithinWhatAParameterMayBe) {
-  const auto models = process_window({threshold(0.97)}, kGrid);
+  const auto models = process_window({threshold(0.97)}, kHalfPixels);
   ASSERT_EQ(models.size(), 3U);
   EXPECT_NEAR(models[1].form().level, 0.92, 1e-12);
   EXPECT_EQ(models[2].form().level, 0.97) << "1.02 would bind nothing";

@@ -19,7 +19,7 @@ using whole::score;
 using whole::Volume;
 
 // Voxels of 0.1 mm, two slices a layer: 2 voxels are worn at most, and one layer.
-const Grid kGrid{{0.1, 0.1, 0.2}, {1, 1, 2}};
+const Grid kTwoSlices{{0.1, 0.1, 0.2}, {1, 1, 2}};
 
 // Both from the same function of x, y and the layer.
 template <class Solid>
@@ -50,7 +50,7 @@ TEST(Faults, CountAPinThatVanishesAsOneLost) {
   };
   const Volume target =
       target_of(22, 22, 7, [&](int x, int y, int k) { return base(x, y, k) || pin(x, y, k); });
-  const auto result = score(target, printed_of(22, 22, 7, base), kGrid);
+  const auto result = score(target, printed_of(22, 22, 7, base), kTwoSlices);
   expect_counts(result.score, 1, 0, 0);
   // The layer that stands on the base is worn, the other four are lost.
   const Region region = result.faults.front().region;
@@ -64,7 +64,7 @@ TEST(Faults, CountASlotThatClosesAsOneFused) {
   const auto slot = [](int x, int, int) { return x >= 13 && x < 17; };
   const Volume target =
       target_of(30, 30, 5, [&](int x, int y, int k) { return block(x, y, k) && !slot(x, y, k); });
-  const auto result = score(target, printed_of(30, 30, 5, block), kGrid);
+  const auto result = score(target, printed_of(30, 30, 5, block), kTwoSlices);
   expect_counts(result.score, 0, 1, 0);
   // It is open at both ends, below and above: two voxels and a layer there are only worn.
   const Region region = result.faults.front().region;
@@ -80,7 +80,7 @@ TEST(Faults, CountALonePrintedCrumbAsOneSpurious) {
                                        [&](int x, int y, int k) {
                                          return block(x, y, k) || (k > 0 && x == 15 && y == 3);
                                        }),
-                            kGrid);
+                            kTwoSlices);
   expect_counts(result.score, 0, 0, 1);
   EXPECT_EQ(result.faults.front().region.voxels, 2 * 2) << "two layers of two slices";
 }
@@ -92,7 +92,7 @@ TEST(Faults, CountAsSpuriousOnlyWhatHoldsNoTargetInAnySlice) {
   expect_counts(
       score(target,
             printed_of(20, 6, 2, [](int x, int, int k) { return k == 0 && x >= 3 && x < 9; }),
-            kGrid)
+            kTwoSlices)
           .score,
       0, 0, 0);
 }
@@ -102,8 +102,8 @@ TEST(Faults, CountAThinnedWallAndAThickenedOneAsNone) {
     return [=](int x, int, int) { return x >= from && x < to; };
   };
   const Volume target = target_of(30, 30, 4, wall(10, 18));
-  expect_counts(score(target, printed_of(30, 30, 4, wall(12, 16)), kGrid).score, 0, 0, 0);
-  expect_counts(score(target, printed_of(30, 30, 4, wall(8, 20)), kGrid).score, 0, 0, 0);
+  expect_counts(score(target, printed_of(30, 30, 4, wall(12, 16)), kTwoSlices).score, 0, 0, 0);
+  expect_counts(score(target, printed_of(30, 30, 4, wall(8, 20)), kTwoSlices).score, 0, 0, 0);
 }
 
 TEST(Faults, CountAWallThatIsGoneAsOneLostBesideOneThatIsThere) {
@@ -111,7 +111,7 @@ TEST(Faults, CountAWallThatIsGoneAsOneLostBesideOneThatIsThere) {
   const Volume target = target_of(30, 12, 4, [&](int x, int y, int k) {
     return wall(x, y, k) || (x >= 9 && x < 11);  // two voxels away: near, but another wall
   });
-  expect_counts(score(target, printed_of(30, 12, 4, wall), kGrid).score, 1, 0, 0);
+  expect_counts(score(target, printed_of(30, 12, 4, wall), kTwoSlices).score, 1, 0, 0);
 }
 
 TEST(Faults, CountABrokenSpikeOnlyIfMoreThanWearIsGone) {
@@ -121,8 +121,8 @@ TEST(Faults, CountABrokenSpikeOnlyIfMoreThanWearIsGone) {
     };
   };
   const Volume target = target_of(24, 18, 3, spike(10));
-  expect_counts(score(target, printed_of(24, 18, 3, spike(8)), kGrid).score, 0, 0, 0);
-  expect_counts(score(target, printed_of(24, 18, 3, spike(7)), kGrid).score, 1, 0, 0);
+  expect_counts(score(target, printed_of(24, 18, 3, spike(8)), kTwoSlices).score, 0, 0, 0);
+  expect_counts(score(target, printed_of(24, 18, 3, spike(7)), kTwoSlices).score, 1, 0, 0);
 }
 
 TEST(Faults, CountASkinThatALayerTooFewLeavesAsNone) {
@@ -131,14 +131,14 @@ TEST(Faults, CountASkinThatALayerTooFewLeavesAsNone) {
   };
   const auto lower = [&](int x, int y, int k) { return k < 3 && block(x, y, k); };
   const Volume target = target_of(20, 20, 5, block);
-  expect_counts(score(target, printed_of(20, 20, 5, lower), kGrid).score, 0, 0, 0);
+  expect_counts(score(target, printed_of(20, 20, 5, lower), kTwoSlices).score, 0, 0, 0);
 }
 
 TEST(Faults, CountWhatIsDiagonallyApartTwice) {
   const Volume target = target_of(20, 20, 3, [](int x, int y, int k) {
     return (k < 2 && x < 5 && y < 5) || (k < 2 && x >= 5 && y >= 5 && x < 9 && y < 9);
   });
-  expect_counts(score(target, Volume(20, 20, 3), kGrid).score, 2, 0, 0);
+  expect_counts(score(target, Volume(20, 20, 3), kTwoSlices).score, 2, 0, 0);
 }
 
 // The rows of the picture in faults.h, as blocks of 11 rows and 5 layers.
@@ -154,7 +154,7 @@ std::vector<Fault> found(const std::string& target, const std::string& printed, 
   const Volume wanted = block_of(target, 10);
   const Volume print = block_of(printed, 5);
   const auto layers = score_layers(whole::voxel_stream(wanted, 2, {0, 5}),
-                                   whole::layer_stream(print), kGrid, {0, 5})
+                                   whole::layer_stream(print), kTwoSlices, {0, 5})
                           ->next(5);
   FaultFinder finder(2, std::move(scope));
   std::vector<Fault> all;
@@ -295,8 +295,8 @@ TEST(Faults, AreTheSameForPowderAsForSolid) {
     not_target.fill([&](int x, int y, int z) { return target.at(x, y, z) == 0; });
     Volume not_printed = printed;
     not_printed.fill([&](int x, int y, int z) { return printed.at(x, y, z) == 0; });
-    const auto solid = score(target, printed, kGrid, 2);
-    const auto powder = score(not_target, not_printed, kGrid);
+    const auto solid = score(target, printed, kTwoSlices, 2);
+    const auto powder = score(not_target, not_printed, kTwoSlices);
     ASSERT_EQ(solid.score.faults[FaultKind::kLost], powder.score.faults[FaultKind::kFused]);
     const auto lost = solid.regions(FaultKind::kLost);
     const auto fused = powder.regions(FaultKind::kFused);

@@ -17,13 +17,13 @@ using testing::ElementsAre;
 using testing::HasSubstr;
 using testing::IsEmpty;
 
-constexpr int kLayers = 40;
+constexpr int kSpoolLayers = 40;
 
 class SpoolTest : public testing::Test {
  protected:
   SpoolTest() {
-    write_sample_job(folder_ / "whole.bjob", 0, kLayers);
-    ticket_ = {kSampleHeader, kLayers, "part one.bjob", folder_ / "whole.bjob"};
+    write_sample_job(folder_ / "whole.bjob", 0, kSpoolLayers);
+    ticket_ = {kSampleHeader, kSpoolLayers, "part one.bjob", folder_ / "whole.bjob"};
   }
   std::unique_ptr<Backend> backend() const { return *open_backend("spool:" + spool_); }
   // Sends layers [first, end).
@@ -62,7 +62,7 @@ TEST_F(SpoolTest, TakesAWholeJobByteForByte) {
   const auto id = sender->start(ticket_);
   ASSERT_TRUE(id) << id.error().what;
   EXPECT_EQ(only_job().state, JobState::kIncoming);
-  ASSERT_TRUE(send(*sender, 0, kLayers));
+  ASSERT_TRUE(send(*sender, 0, kSpoolLayers));
   EXPECT_THAT(names_in(spool_ + "/done"), IsEmpty()) << "visible before its end";
   ASSERT_TRUE(sender->end());
   EXPECT_EQ(done_text(*id), whole_text());
@@ -70,7 +70,7 @@ TEST_F(SpoolTest, TakesAWholeJobByteForByte) {
   EXPECT_THAT(names_in(spool_ + "/held"), IsEmpty());
   const JobStatus job = only_job();
   EXPECT_EQ(job.state, JobState::kDone);
-  EXPECT_EQ(job.acknowledged, kLayers);
+  EXPECT_EQ(job.acknowledged, kSpoolLayers);
   EXPECT_EQ(job.name, "part one.bjob") << "blanks in a name survive the journal";
 }
 
@@ -83,7 +83,7 @@ TEST_F(SpoolTest, AcknowledgesALayerThatComesAlone) {
 TEST_F(SpoolTest, AcknowledgesNothingThatIsNotInItsJournal) {
   const auto sender = backend();
   const auto id = sender->start(ticket_);
-  for (int layer = 0; layer < kLayers; ++layer) {
+  for (int layer = 0; layer < kSpoolLayers; ++layer) {
     const auto acknowledged = sender->send(layer, sample_records(layer));
     ASSERT_TRUE(acknowledged);
     EXPECT_EQ(Journal::peek(spool_ + "/incoming/" + *id + "/journal")->acknowledged, *acknowledged);
@@ -106,7 +106,7 @@ TEST_F(SpoolTest, ResumesFromAnyLayerToTheSameBytes) {
     const auto first = sender->resume(id, ticket_);
     ASSERT_TRUE(first) << first.error().what;
     EXPECT_LE(*first, stop);
-    ASSERT_TRUE(send(*sender, *first, kLayers));
+    ASSERT_TRUE(send(*sender, *first, kSpoolLayers));
     ASSERT_TRUE(sender->end());
     EXPECT_EQ(done_text(id), whole_text());
   }
@@ -121,7 +121,7 @@ TEST_F(SpoolTest, ResumesAJobTwice) {
   }
   const auto sender = backend();
   const int first = *sender->resume(id, ticket_);
-  ASSERT_TRUE(send(*sender, first, kLayers));
+  ASSERT_TRUE(send(*sender, first, kSpoolLayers));
   ASSERT_TRUE(sender->end());
   EXPECT_EQ(done_text(id), whole_text());
 }
@@ -184,7 +184,7 @@ TEST_F(SpoolTest, CancelsAJobThatIsBeingSent) {
 TEST_F(SpoolTest, CancelsAJobJustBeforeItsEnd) {
   const auto sender = backend();
   const auto id = sender->start(ticket_);
-  ASSERT_TRUE(send(*sender, 0, kLayers));
+  ASSERT_TRUE(send(*sender, 0, kSpoolLayers));
   ASSERT_TRUE(backend()->cancel(*id));
   EXPECT_FALSE(sender->end());
   EXPECT_THAT(names_in(spool_ + "/done"), IsEmpty());
@@ -193,7 +193,7 @@ TEST_F(SpoolTest, CancelsAJobJustBeforeItsEnd) {
 TEST_F(SpoolTest, KeepsADoneJobFromCancelAndResume) {
   const auto sender = backend();
   const auto id = sender->start(ticket_);
-  ASSERT_TRUE(send(*sender, 0, kLayers) && sender->end());
+  ASSERT_TRUE(send(*sender, 0, kSpoolLayers) && sender->end());
   EXPECT_THAT(backend()->cancel(*id).error().what, HasSubstr("too late"));
   EXPECT_THAT(backend()->resume(*id, ticket_).error().what, HasSubstr("nothing to resume"));
   EXPECT_EQ(done_text(*id), whole_text());
@@ -246,7 +246,7 @@ TEST_F(SpoolTest, ResumesWithAJournalCutAnywhere) {
       const auto sender = backend();
       const auto first = sender->resume(id, ticket_);
       ASSERT_TRUE(first) << first.error().what;
-      ASSERT_TRUE(send(*sender, *first, kLayers));
+      ASSERT_TRUE(send(*sender, *first, kSpoolLayers));
       ASSERT_TRUE(sender->end());
     }
     ASSERT_EQ(done_text(id), whole_text());
@@ -265,7 +265,7 @@ TEST_F(SpoolTest, SaysWhenTheDiskLostAcknowledgedLayers) {
 }
 
 TEST_F(SpoolTest, FinishesWhatADeathBetweenTheLastTwoRenamesLeft) {
-  const std::string id = held_job(kLayers);
+  const std::string id = held_job(kSpoolLayers);
   std::filesystem::rename(spool_ + "/held/" + id, spool_ + "/incoming/" + id);
   std::filesystem::remove(spool_ + "/incoming/" + id + "/job.part");
   std::filesystem::copy_file(folder_ / "whole.bjob", spool_ + "/done/" + id + ".bjob");
@@ -325,14 +325,14 @@ TEST(Journal, RemembersTheDeviceAndTheDigest) {
 
 TEST(FileBackend, WritesTheSameJobAndNothingHalf) {
   const TempFolder folder;
-  write_sample_job(folder / "whole.bjob", 0, kLayers);
-  for (const int stop : {kLayers, 20}) {
+  write_sample_job(folder / "whole.bjob", 0, kSpoolLayers);
+  for (const int stop : {kSpoolLayers, 20}) {
     const auto backend = *open_backend("file:" + (folder / "out.bjob"));
-    ASSERT_TRUE(backend->start({kSampleHeader, kLayers, "a", ""}));
+    ASSERT_TRUE(backend->start({kSampleHeader, kSpoolLayers, "a", ""}));
     for (int layer = 0; layer < stop; ++layer) {
       EXPECT_EQ(*backend->send(layer, sample_records(layer)), 0) << "nothing would survive yet";
     }
-    EXPECT_EQ(backend->end().has_value(), stop == kLayers);
+    EXPECT_EQ(backend->end().has_value(), stop == kSpoolLayers);
     EXPECT_EQ(file_text(folder / "out.bjob"), file_text(folder / "whole.bjob"));
     EXPECT_THAT(names_in(folder.path()), ElementsAre("out.bjob", "whole.bjob"));
   }

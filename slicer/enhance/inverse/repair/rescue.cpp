@@ -8,6 +8,7 @@
 #include <utility>
 #include <vector>
 
+#include "slicer/enhance/inverse/repair/fault_weights.h"
 #include "slicer/enhance/inverse/repair/spurious.h"
 #include "slicer/enhance/inverse/search/loose_in_window.h"
 #include "slicer/score/faults.h"
@@ -15,11 +16,6 @@
 
 namespace binderjet {
 namespace {
-
-// What a fault weighs, in voxels: a piece that comes off is seen as one by up to three layers and
-// spoils a part; a feature that is gone spoils itself.
-constexpr std::int64_t kPieceWeight = 1000;
-constexpr std::int64_t kFeatureWeight = 500;
 
 using FaultsByOffset = std::map<int, Shared<LayerFaults>>;
 

@@ -7,15 +7,12 @@
 #include <optional>
 #include <utility>
 
+#include "slicer/enhance/inverse/repair/fault_weights.h"
 #include "slicer/enhance/inverse/repair/mask_patch.h"
 #include "slicer/enhance/inverse/search/layer_sets.h"
 
 namespace binderjet {
 namespace {
-
-// What a fault weighs, in voxels: a piece that comes off spoils a part; a feature spoils itself.
-constexpr std::int64_t kPieceWeight = 1000;
-constexpr std::int64_t kFeatureWeight = 500;
 
 std::size_t at(int layer) { return static_cast<std::size_t>(layer); }
 

@@ -54,7 +54,7 @@ StackInfo frame_of(int layers) {
   frame.origin_mm = {3, -2, 0};
   return frame;
 }
-constexpr int kLayers = 10;
+constexpr int kScanLayers = 10;
 
 // The frame's own corner is the part's (0, 0).
 std::vector<RunLayer> predicted(const Part& part, const StackInfo& frame) {
@@ -171,7 +171,7 @@ void expect_pose(const Registration& found, const Pose& truth) {
 }
 
 TEST(Measured, FindsShiftAndTurnUnderBlurAndNoise) {
-  const StackInfo frame = frame_of(kLayers);
+  const StackInfo frame = frame_of(kScanLayers);
   const auto wanted = predicted(plate, frame);
   std::random_device device;
   const unsigned seed = device();
@@ -203,7 +203,7 @@ TEST(Measured, FindsShiftAndTurnUnderBlurAndNoise) {
 // What the printer does on both sides of every edge must not pull at the pose, and a printer that
 // prints too large must still look so afterwards.
 TEST(Measured, LeavesGrowthAndScaleInThePrint) {
-  const StackInfo frame = frame_of(kLayers);
+  const StackInfo frame = frame_of(kScanLayers);
   const auto wanted = predicted(plate, frame);
   const Workplace place;
   ScanOf scan;
@@ -230,7 +230,7 @@ TEST(Measured, LeavesGrowthAndScaleInThePrint) {
 }
 
 TEST(Measured, FindsTheHeightOfAScanWithSlicesOfItsOwn) {
-  const StackInfo frame = frame_of(kLayers);
+  const StackInfo frame = frame_of(kScanLayers);
   const auto wanted = predicted(plate, frame);
   const Workplace place;
   ScanOf scan;
@@ -248,7 +248,7 @@ TEST(Measured, FindsTheHeightOfAScanWithSlicesOfItsOwn) {
 }
 
 TEST(Measured, StrewsNoVoxelsWhereAScanIsVeryNoisy) {
-  const StackInfo frame = frame_of(kLayers);
+  const StackInfo frame = frame_of(kScanLayers);
   const auto wanted = predicted(plate, frame);
   const Workplace place;
   ScanOf scan;

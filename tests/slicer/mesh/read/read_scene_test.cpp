@@ -36,13 +36,13 @@ std::string model_3mf(const std::string& unit, const std::string& resources,
                       .unit = unit});
 }
 
-MeshFile read(const std::string& name, const std::string& content) {
+MeshFile read_scene(const std::string& name, const std::string& content) {
   const TemporaryFile file(name, content);
   return read_mesh(file.path());
 }
 
 TEST(Read3mf, KeepsTheNumbersAndDeclaresTheUnit) {
-  const MeshFile file = read("a.3mf", model_3mf("inch", "", "<item objectid=\"1\"/>"));
+  const MeshFile file = read_scene("a.3mf", model_3mf("inch", "", "<item objectid=\"1\"/>"));
   EXPECT_TRUE(file.unit_declared);
   EXPECT_EQ(file.unit_mm, 25.4);
   EXPECT_THAT(file.warnings, ElementsAre(HasSubstr("inch")));
@@ -53,7 +53,7 @@ TEST(Read3mf, KeepsTheNumbersAndDeclaresTheUnit) {
 TEST(Read3mf, AppliesTheComponentsTransformBeforeTheItems) {
   // The component moves by 10 in x, the item then swaps x and y: 10 in y. A swap mirrors, so the
   // faces turn, or the volume would be negative.
-  const MeshFile file = read(
+  const MeshFile file = read_scene(
       "a.3mf", model_3mf("millimeter",
                          "<object id=\"3\" type=\"model\"><components><component objectid=\"1\" "
                          "transform=\"1 0 0 0 1 0 0 0 1 10 0 0\"/></components></object>",
@@ -64,7 +64,7 @@ TEST(Read3mf, AppliesTheComponentsTransformBeforeTheItems) {
 }
 
 TEST(Read3mf, TakesEveryItemOfTheBuildButNoSupports) {
-  const MeshFile file = read(
+  const MeshFile file = read_scene(
       "a.3mf", model_3mf("millimeter", "",
                          "<item objectid=\"1\"/><item objectid=\"1\" transform=\"1 0 0 0 1 0 0 "
                          "0 1 5 0 0\"/><item objectid=\"2\"/>"));
@@ -73,7 +73,7 @@ TEST(Read3mf, TakesEveryItemOfTheBuildButNoSupports) {
 }
 
 TEST(Read3mf, RefusesAnEmptyBuild) {
-  EXPECT_THAT(error_of([] { read("a.3mf", model_3mf("millimeter", "", "")); }),
+  EXPECT_THAT(error_of([] { read_scene("a.3mf", model_3mf("millimeter", "", "")); }),
               HasSubstr("its build names no model"));
 }
 
@@ -96,7 +96,7 @@ std::string glb(const std::string& node) {
 }
 
 TEST(ReadGltf, StandsWhereItsNodePutsItAndWarnsOfMeters) {
-  const MeshFile file = read("a.glb", glb("\"translation\":[10,0,0],\"scale\":[2,2,2],"));
+  const MeshFile file = read_scene("a.glb", glb("\"translation\":[10,0,0],\"scale\":[2,2,2],"));
   EXPECT_TRUE(is_closed(file.mesh));
   EXPECT_NEAR(signed_volume(file.mesh), 8.0, 1e-9);
   EXPECT_EQ(bounding_box(file.mesh).min[0], 10);
@@ -105,11 +105,11 @@ TEST(ReadGltf, StandsWhereItsNodePutsItAndWarnsOfMeters) {
 }
 
 TEST(ReadGltf, TurnsTheFacesOfAMirroringNode) {
-  EXPECT_NEAR(signed_volume(read("a.glb", glb("\"scale\":[-1,1,1],")).mesh), 1.0, 1e-9);
+  EXPECT_NEAR(signed_volume(read_scene("a.glb", glb("\"scale\":[-1,1,1],")).mesh), 1.0, 1e-9);
 }
 
 TEST(ReadGltf, RefusesADamagedFile) {
-  EXPECT_THAT(error_of([] { read("a.glb", glb("").substr(0, 200)); }),
+  EXPECT_THAT(error_of([] { read_scene("a.glb", glb("").substr(0, 200)); }),
               HasSubstr("a.glb: cannot be"));
 }
 
@@ -117,14 +117,14 @@ TEST(ReadVrml, RefusesAFaceWhosePointIsNotThere) {
   const std::string coordinates = "{ point [0 0 0, 1 0 0, 0 1 0] }";
   const std::string faces = "{ coordIndex [0, 111111, 2, -1] }";
   EXPECT_THAT(error_of([&] {
-                read("a.wrl", "#VRML V1.0 ascii\nSeparator { Coordinate3 " + coordinates +
-                                  " IndexedFaceSet " + faces + " }");
+                read_scene("a.wrl", "#VRML V1.0 ascii\nSeparator { Coordinate3 " + coordinates +
+                                        " IndexedFaceSet " + faces + " }");
               }),
               HasSubstr("a point that is not there"));
   EXPECT_THAT(error_of([&] {
-                read("a.wrl",
-                     "#VRML V2.0 utf8\nShape { geometry IndexedFaceSet { coord Coordinate " +
-                         coordinates + " coordIndex [0, 1, 3, -1] } }");
+                read_scene("a.wrl",
+                           "#VRML V2.0 utf8\nShape { geometry IndexedFaceSet { coord Coordinate " +
+                               coordinates + " coordIndex [0, 1, 3, -1] } }");
               }),
               HasSubstr("a point that is not there"));
 }
@@ -138,7 +138,7 @@ TEST(ReadVrml, RefusesANodeWhereAnotherKindBelongs) {
         std::string("geometry PointSet { coord Box { } }"),
         std::string("geometry ElevationGrid { xDimension 2 zDimension 2 height [0 1 0 1] "
                     "texCoord Material { } }")}) {
-    EXPECT_THAT(error_of([&] { read("a.wrl", "#VRML V2.0 utf8\nShape { " + shape + " }"); }),
+    EXPECT_THAT(error_of([&] { read_scene("a.wrl", "#VRML V2.0 utf8\nShape { " + shape + " }"); }),
                 HasSubstr("where another kind of node belongs"))
         << shape;
   }
@@ -146,10 +146,11 @@ TEST(ReadVrml, RefusesANodeWhereAnotherKindBelongs) {
 
 // Assimp's OBJ reader crashes on files that ours refuses.
 TEST(ReadGltf, LeavesToAssimpNothingThatWeReadOurselves) {
-  EXPECT_THAT(error_of([] { read("a.obj", "glTF\nv 0 0 0\n"); }), HasSubstr("no known format"));
+  EXPECT_THAT(error_of([] { read_scene("a.obj", "glTF\nv 0 0 0\n"); }),
+              HasSubstr("no known format"));
   const std::string obj = "# an OBJ file\nv 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n";
-  EXPECT_THAT(error_of([&] { read("a.gltf", obj); }), HasSubstr("cannot be read"));
-  EXPECT_THAT(error_of([&] { read("a.dae", obj); }), HasSubstr("cannot be read"));
+  EXPECT_THAT(error_of([&] { read_scene("a.gltf", obj); }), HasSubstr("cannot be read"));
+  EXPECT_THAT(error_of([&] { read_scene("a.dae", obj); }), HasSubstr("cannot be read"));
 }
 
 }  // namespace

@@ -9,6 +9,7 @@
 #include "slicer/model/printer_model.h"
 #include "tests/support/examples.h"
 #include "tests/support/random.h"
+#include "tests/support/rows.h"
 
 namespace binderjet {
 namespace {
@@ -17,7 +18,7 @@ using whole::Random;
 using whole::Volume;
 
 // Voxels of 0.1 mm; a pixel is one voxel.
-const Grid kGrid{{0.1, 0.1, 0.1}, {1, 1, 1}};
+const Grid kPlacedGrid{{0.1, 0.1, 0.1}, {1, 1, 1}};
 const EffectSpec kSpread{"spread", {{"shape", "box"}}, {{"width_mm", {0.5, 0.3}}}};
 const EffectSpec kThreshold{"threshold", {}, {{"level", {0.5}}}};
 
@@ -27,12 +28,8 @@ RunLayer bar() {
   for (int y = 0; y < 20; ++y) layer.append_row(std::vector<int>{15, 25});
   return layer;
 }
-std::vector<int> middle_row(const RunLayer& layer) {
-  const auto row = layer.row(layer.height() / 2);
-  return {row.begin(), row.end()};
-}
 PrinterModel model(const EffectSpec& effect, const JobPlace& place = {{0, 0}, {4, 2}}) {
-  return {{kSpread, kThreshold, effect}, kGrid, place};
+  return {{kSpread, kThreshold, effect}, kPlacedGrid, place};
 }
 std::vector<int> printed(const EffectSpec& effect, int layer = 0) {
   const PrinterModel printer = model(effect);
@@ -57,7 +54,7 @@ TEST(PlacedEffects, ShiftsEvenAndOddLayersApart) {
 TEST(PlacedEffects, ShiftsWhatBleedsDownLikeTheLayerThatItComesFrom) {
   const PrinterModel printer(
       {kThreshold, {"z_bleed_down", {}, {{"share", {0.6}}}}, {"parity", {}, {{"by_mm", {0.2, 0}}}}},
-      kGrid);
+      kPlacedGrid);
   const RunLayer mask = bar();
   const RunLayer powder = RunLayer::powder(mask.width(), mask.height());
   const RunWindow window = RunWindow::around(
@@ -117,7 +114,7 @@ TEST(PlacedEffects, WeakensRowsAroundAJetByTheBinderThatTheyWouldGetFromIt) {
   for (int y = 0; y < 20; ++y) {
     without.append_row(y == 10 ? std::vector<int>{} : std::vector<int>{15, 25});
   }
-  const PrinterModel plain({kSpread, kThreshold}, kGrid, {{0, 0}, {4, 2}});
+  const PrinterModel plain({kSpread, kThreshold}, kPlacedGrid, {{0, 0}, {4, 2}});
   const PrinterModel out =
       model({"jet_out", {}, {{"from_mm", {1.0}}, {"to_mm", {1.1}}, {"amount", {-1}}}});
   EXPECT_EQ(out.print(bar()), plain.print(without));
@@ -166,7 +163,7 @@ TEST(PlacedEffects, BindsFlatFieldsWhereTheGainLiftsThemOverTheLevel) {
   form.terms.front().gain = 0.45;
   form.placed.gains.push_back(
       {[](const Spot& s) { return s.x_mm > 1 && s.x_mm < 2 ? 0.2 : 0.0; }, 0.2});
-  const PrinterModel printer(form, kGrid);
+  const PrinterModel printer(form, kPlacedGrid);
   RunLayer mask(40);
   for (int y = 0; y < 5; ++y) mask.append_row(std::vector<int>{0, 40});
   EXPECT_EQ(middle_row(printer.print(mask)), (std::vector<int>{10, 20}));
@@ -176,7 +173,7 @@ TEST(PlacedEffects, CountsTheSolidShareOfABox) {
   const RunLayer mask = bar();
   const RunWindow window{nullptr, &mask, &mask};
   // A box far wider than the layer: 200 solid pixels in two of three layers.
-  const DensityField field(window, kGrid, 10);
+  const DensityField field(window, kPlacedGrid, 10);
   const double side = 2 * 25 * 4 - 4;  // whole cells around the middle one
   EXPECT_NEAR(field.at(20, 10), 2 * 200 / (3 * side * side), 1e-3);
 }
@@ -186,7 +183,7 @@ TEST(PlacedEffects, RefusesTwoRadiiOfDensity) {
     return EffectSpec{
         "density", {}, {{"strength", {0.1}}, {"radius_mm", {radius}}, {"reference", {0.5}}}};
   };
-  EXPECT_THROW(PrinterModel({kThreshold, density(1), density(2)}, kGrid), Error);
+  EXPECT_THROW(PrinterModel({kThreshold, density(1), density(2)}, kPlacedGrid), Error);
 }
 
 // The streamed engine on runs and integers against the probe's plain sums of real numbers.

@@ -16,8 +16,8 @@ using whole::Random;
 using whole::Volume;
 
 // Voxels of 0.1 mm; a pixel is one voxel.
-const Grid kGrid{{0.1, 0.1, 0.1}, {1, 1, 1}};
-const EffectSpec kThreshold{"threshold", {}, {{"level", {0.5}}}};
+const Grid kWearGrid{{0.1, 0.1, 0.1}, {1, 1, 1}};
+const EffectSpec kHalfLevel{"threshold", {}, {{"level", {0.5}}}};
 
 std::vector<RunLayer> layers_of(const Volume& v) {
   std::vector<RunLayer> out;
@@ -73,7 +73,8 @@ TEST(Wear, BallRoundingIsTheOpeningOfTheWholePart) {
     const int radius = random.number(1, 3);
     const Volume mask = random.volume(16, 14, 7, 2);
     const PrinterModel model(
-        {kThreshold, {"rounding", {{"shape", "ball"}}, {{"radius_mm", {radius * 0.1}}}}}, kGrid);
+        {kHalfLevel, {"rounding", {{"shape", "ball"}}, {{"radius_mm", {radius * 0.1}}}}},
+        kWearGrid);
     ASSERT_EQ(printed(model, mask),
               by_ball(by_ball(mask, radius, true, false), radius, false, true));
   }
@@ -85,11 +86,11 @@ TEST(Wear, DiscRoundingOpensEachLayerAlone) {
   const EffectSpec disc{"rounding", {{"shape", "disc"}}, {{"radius_mm", {0.2}}}};
   const EffectSpec ball{"rounding", {{"shape", "ball"}}, {{"radius_mm", {0.2}}}};
   // Layers far thicker than the radius: no ball reaches the next.
-  Grid thick = kGrid;
+  Grid thick = kWearGrid;
   thick.pitch_mm[2] = 1;
-  const PrinterModel model({kThreshold, disc}, kGrid);
+  const PrinterModel model({kHalfLevel, disc}, kWearGrid);
   EXPECT_EQ(model.wear_reach(), 0);
-  EXPECT_EQ(printed(model, mask), printed(PrinterModel({kThreshold, ball}, thick), mask));
+  EXPECT_EQ(printed(model, mask), printed(PrinterModel({kHalfLevel, ball}, thick), mask));
 }
 
 TEST(Wear, InfiltrantIsTheClosingOfTheWholePartAndASkin) {
@@ -100,9 +101,9 @@ TEST(Wear, InfiltrantIsTheClosingOfTheWholePartAndASkin) {
     const int skin = random.number(0, radius);
     const Volume mask = random.volume(18, 16, 7, 5);
     const PrinterModel model(
-        {kThreshold,
+        {kHalfLevel,
          {"infiltrant", {}, {{"radius_mm", {radius * 0.1}}, {"skin_mm", {skin * 0.1}}}}},
-        kGrid);
+        kWearGrid);
     ASSERT_EQ(printed(model, mask),
               by_ball(by_ball(mask, radius, false, true), radius - skin, true, true));
   }
@@ -111,7 +112,7 @@ TEST(Wear, InfiltrantIsTheClosingOfTheWholePartAndASkin) {
 TEST(Wear, GaussianRoundingLeavesFlatFacesAndTakesCorners) {
   const Volume mask = block(40, 40, 9, 8);
   const PrinterModel model(
-      {kThreshold, {"rounding", {{"shape", "gaussian"}}, {{"radius_mm", {0.15}}}}}, kGrid);
+      {kHalfLevel, {"rounding", {{"shape", "gaussian"}}, {{"radius_mm", {0.15}}}}}, kWearGrid);
   const Volume out = printed(model, mask);
   EXPECT_EQ(out.at(8, 20, 4), 1);
   EXPECT_EQ(out.at(7, 20, 4), 0);
@@ -128,7 +129,7 @@ TEST(Wear, FillsASlotAndKeepsAWideOne) {
     }
   }
   const PrinterModel model(
-      {kThreshold, {"infiltrant", {}, {{"radius_mm", {0.15}}, {"skin_mm", {0}}}}}, kGrid);
+      {kHalfLevel, {"infiltrant", {}, {{"radius_mm", {0.15}}, {"skin_mm", {0}}}}}, kWearGrid);
   const Volume out = printed(model, mask);
   EXPECT_EQ(out.at(12, 10, 2), 1);
   EXPECT_EQ(out.at(24, 10, 2), 0);
@@ -137,16 +138,16 @@ TEST(Wear, FillsASlotAndKeepsAWideOne) {
 TEST(Wear, ComesAfterWhatWasBoundFromLayersAround) {
   const Volume mask = block(30, 30, 8, 8);
   const PrinterModel model({{"spread", {{"shape", "box"}}, {{"width_mm", {0.5, 0.3}}}},
-                            kThreshold,
+                            kHalfLevel,
                             {"z_bleed_down", {}, {{"share", {0.4}}}},
                             {"rounding", {{"shape", "ball"}}, {{"radius_mm", {0.2}}}}},
-                           kGrid);
+                           kWearGrid);
   EXPECT_EQ(model.wear_reach(), 4);
   EXPECT_EQ(model.window_reach(), model.bind_reach() + model.wear_reach());
   const PrinterModel unworn({{"spread", {{"shape", "box"}}, {{"width_mm", {0.5, 0.3}}}},
-                             kThreshold,
+                             kHalfLevel,
                              {"z_bleed_down", {}, {{"share", {0.4}}}}},
-                            kGrid);
+                            kWearGrid);
   EXPECT_EQ(printed(model, mask),
             by_ball(by_ball(printed(unworn, mask), 2, true, false), 2, false, true));
 }
@@ -156,9 +157,9 @@ TEST(LayerMoves, LoseALayerFromAHeightOn) {
   const Volume mask = random.volume(12, 10, 9, 1);
   for (const int lost : {-2, -1, 1, 2}) {
     const PrinterModel model(
-        {kThreshold,
+        {kHalfLevel,
          {"slice_dropout", {}, {{"at_mm", {0.4}}, {"layers", {static_cast<double>(lost)}}}}},
-        kGrid);
+        kWearGrid);
     Volume expected(mask.nx, mask.ny, mask.nz);
     expected.fill([&](int x, int y, int z) { return mask.at(x, y, z < 4 ? z : z + lost) == 1; });
     EXPECT_EQ(printed(model, mask), expected);
@@ -172,15 +173,15 @@ TEST(LayerMoves, TakeTheBinderThatBleedsAlong) {
   const EffectSpec lost{"slice_dropout", {}, {{"at_mm", {0.4}}, {"layers", {1}}}};
   Volume moved(mask.nx, mask.ny, mask.nz);
   moved.fill([&](int x, int y, int z) { return mask.at(x, y, z < 4 ? z : z + 1) == 1; });
-  EXPECT_EQ(printed(PrinterModel({kThreshold, bleed, lost}, kGrid), mask),
-            printed(PrinterModel({kThreshold, bleed}, kGrid), moved));
+  EXPECT_EQ(printed(PrinterModel({kHalfLevel, bleed, lost}, kWearGrid), mask),
+            printed(PrinterModel({kHalfLevel, bleed}, kWearGrid), moved));
 }
 
 TEST(LayerMoves, CompressTheHeight) {
   // A tenth: the middle of printed layer 9 is where 9.5 / 0.9 = 10.6 was meant to be.
   Volume mask(4, 4, 20);
   mask.fill([](int, int, int z) { return z == 0 || z == 10 || z == 19; });
-  const PrinterModel model({kThreshold, {"recoat_compress", {}, {{"share", {0.1}}}}}, kGrid);
+  const PrinterModel model({kHalfLevel, {"recoat_compress", {}, {{"share", {0.1}}}}}, kWearGrid);
   const Volume out = printed(model, mask);
   std::vector<int> solid;
   for (int z = 0; z < 20; ++z) {
@@ -195,9 +196,9 @@ TEST(FirstDrops, DrawBackTheEdgeWhereALineStarts) {
   const auto row = [&](const std::string& after) {
     const PrinterModel model(
         {{"spread", {{"shape", "box"}}, {{"width_mm", {0.5, 0.3}}}},
-         kThreshold,
+         kHalfLevel,
          {"first_drops", {{"after", after}}, {{"amount", {0.9}}, {"length_mm", {0.3}}}}},
-        kGrid);
+        kWearGrid);
     const RunLayer out = model.print(mask);
     return std::vector<int>{out.row(2).begin(), out.row(2).end()};
   };
@@ -210,11 +211,11 @@ TEST(Streak, BeginsAtAHeight) {
   RunLayer mask(60);
   for (int y = 0; y < 5; ++y) mask.append_row(std::vector<int>{10, 50});
   const PrinterModel model(
-      {kThreshold,
+      {kHalfLevel,
        {"recoat_streak",
         {{"across", "x"}},
         {{"from_mm", {2}}, {"to_mm", {2.3}}, {"at_mm", {0.7}}, {"amount", {-0.8}}}}},
-      kGrid, {{0, 0}, {6, 0.5}});
+      kWearGrid, {{0, 0}, {6, 0.5}});
   const RunWindow window{&mask};
   const auto row = [](const RunLayer& out) {
     return std::vector<int>{out.row(2).begin(), out.row(2).end()};
@@ -227,7 +228,7 @@ TEST(Jitter, DoesNotChangeThePrintToExpect) {
   Random random;
   const Volume mask = random.volume(12, 10, 5, 1);
   const EffectSpec jitter{"jitter", {}, {{"sigma_mm", {0.1, 0.1}}}};
-  EXPECT_EQ(printed(PrinterModel({kThreshold, jitter}, kGrid), mask), mask);
+  EXPECT_EQ(printed(PrinterModel({kHalfLevel, jitter}, kWearGrid), mask), mask);
 }
 
 }  // namespace

@@ -9,15 +9,10 @@
 #include "slicer/enhance/inverse/search/layer_sets.h"
 #include "slicer/enhance/rules/mask_regions.h"
 #include "tests/support/random.h"
+#include "tests/support/rows.h"
 
 namespace binderjet {
 namespace {
-
-RunLayer rows_of(std::initializer_list<std::vector<int>> rows) {
-  RunLayer layer(8);
-  for (const std::vector<int>& row : rows) layer.append_row(row);
-  return layer;
-}
 
 TEST(MaskPatch, PlacesAreThePixelsOfTheVoxelsAndWhatIsAroundThem) {
   const Grid grid{{0.1, 0.1, 0.1}, {2, 3, 2}};
@@ -33,18 +28,18 @@ TEST(MaskPatch, PlacesAreThePixelsOfTheVoxelsAndWhatIsAroundThem) {
 }
 
 TEST(MaskPatch, TakesTheOthersPixelsThereAndItsOwnElsewhere) {
-  const RunLayer mask = rows_of({{0, 8}, {0, 8}, {0, 8}});
-  const RunLayer with = rows_of({{0, 1}, {}, {}});
+  const RunLayer mask = rows_of(8, {{0, 8}, {0, 8}, {0, 8}});
+  const RunLayer with = rows_of(8, {{0, 1}, {}, {}});
   const std::array places{Rect{-3, 0, 3, 2}};
-  EXPECT_EQ(patched(mask, with, places, {}), rows_of({{0, 1, 3, 8}, {3, 8}, {0, 8}}));
+  EXPECT_EQ(patched(mask, with, places, {}), rows_of(8, {{0, 1, 3, 8}, {3, 8}, {0, 8}}));
 }
 
 TEST(MaskPatch, ObeysTheRules) {
-  const RunLayer mask = rows_of({{0, 8}, {0, 8}, {0, 8}});
-  const RunLayer with = rows_of({{0, 1}, {}, {}});
+  const RunLayer mask = rows_of(8, {{0, 8}, {0, 8}, {0, 8}});
+  const RunLayer with = rows_of(8, {{0, 1}, {}, {}});
   const std::array places{Rect{0, 0, 3, 3}};
   // The island of one pixel goes.
-  EXPECT_EQ(patched(mask, with, places, {4, 4}), rows_of({{3, 8}, {3, 8}, {3, 8}}));
+  EXPECT_EQ(patched(mask, with, places, {4, 4}), rows_of(8, {{3, 8}, {3, 8}, {3, 8}}));
 }
 
 TEST(MaskPatch, ObeysTheRulesEverywhereAndChangesNothingFarOff) {

@@ -56,7 +56,7 @@ Stretch::Faults faults(const InverseSolver& solver, const Stretch::Layers& layer
 }
 
 constexpr int kLayers = 12;
-const Grid kGrid{{0.1, 0.1, 0.1}, {2, 2, 2}};
+const Grid kTowerGrid{{0.1, 0.1, 0.1}, {2, 2, 2}};
 
 // A base with a tower.
 Volume tower() {
@@ -70,7 +70,7 @@ Volume tower() {
 
 // Two layers of the tower are not printed.
 Volume masks_with_a_gap() {
-  const Volume all = whole::masks(tower(), kGrid);
+  const Volume all = whole::masks(tower(), kTowerGrid);
   Volume masks = all;
   masks.fill([&](int x, int y, int k) { return k != 5 && k != 6 && all.at(x, y, k) == 1; });
   return masks;
@@ -79,8 +79,8 @@ Volume masks_with_a_gap() {
 InverseSolver solver() {
   return {process_window({{"spread", {{"shape", "box"}}, {{"width_mm", {0.3, 0.3}}}},
                           {"threshold", {}, {{"level", {0.5}}}}},
-                         kGrid),
-          kGrid, MaskRules{4, 4}};
+                         kTowerGrid),
+          kTowerGrid, MaskRules{4, 4}};
 }
 
 TEST(Mend, AMissingStretchOfATowerComesBack) {
@@ -103,7 +103,7 @@ TEST(Mend, OnlyItsOwnLayersChange) {
 
 TEST(Mend, WhatPrintsWhereNoPartIsGoes) {
   const InverseSolver by = solver();
-  Volume masks = whole::masks(tower(), kGrid);
+  Volume masks = whole::masks(tower(), kTowerGrid);
   for (int y = 25; y < 30; ++y)
     for (int x = 25; x < 30; ++x) masks.set(x, y, 8, true);
   const Stretch::Layers before = printed(by, tower(), masks, 2);
@@ -113,7 +113,7 @@ TEST(Mend, WhatPrintsWhereNoPartIsGoes) {
 
 TEST(Mend, ASoundStretchStaysAsItIs) {
   const InverseSolver by = solver();
-  const Stretch::Layers before = printed(by, tower(), whole::masks(tower(), kGrid), 2);
+  const Stretch::Layers before = printed(by, tower(), whole::masks(tower(), kTowerGrid), 2);
   EXPECT_EQ(mended(by.by(), before, {0, kLayers}, kLayers), before);
 }
 

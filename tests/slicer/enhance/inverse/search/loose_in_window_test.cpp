@@ -7,16 +7,12 @@
 #include <array>
 #include <memory>
 
+#include "tests/support/rows.h"
+
 namespace binderjet {
 namespace {
 
 constexpr int kWidth = 20;
-
-RunLayer rows_of(std::initializer_list<std::vector<int>> rows) {
-  RunLayer layer(kWidth);
-  for (const std::vector<int>& row : rows) layer.append_row(row);
-  return layer;
-}
 
 ComparedLayer layer_of(const RunLayer& target, const RunLayer& printed) {
   return {std::make_shared<const VoxelLayer>(VoxelLayer{{target, target}}),
@@ -33,17 +29,17 @@ const RunLayer kNothing = RunLayer::powder(kWidth, 3);
 
 TEST(LooseInWindow, ALineThatPrintsInTwoPiecesHasOneAndAGapToBridge) {
   const ComparedLayer line =
-      layer_of(rows_of({{}, {2, 18}, {}}), rows_of({{}, {2, 9, 11, 14}, {}}));
+      layer_of(rows_of(kWidth, {{}, {2, 18}, {}}), rows_of(kWidth, {{}, {2, 9, 11, 14}, {}}));
   const LooseInWindow pieces = found(nullptr, line, nullptr);
   EXPECT_EQ(pieces.count, 1);
-  EXPECT_EQ(pieces.loose, rows_of({{}, {11, 14}, {}}));
+  EXPECT_EQ(pieces.loose, rows_of(kWidth, {{}, {11, 14}, {}}));
   // What is missing near the smaller piece.
-  EXPECT_EQ(pieces.gap, rows_of({{}, {9, 11, 14, 18}, {}}));
+  EXPECT_EQ(pieces.gap, rows_of(kWidth, {{}, {9, 11, 14, 18}, {}}));
 }
 
 TEST(LooseInWindow, APieceHeldByTheLayerAboveIsNone) {
-  const RunLayer whole = rows_of({{}, {2, 18}, {}});
-  const ComparedLayer line = layer_of(whole, rows_of({{}, {2, 9, 11, 14}, {}}));
+  const RunLayer whole = rows_of(kWidth, {{}, {2, 18}, {}});
+  const ComparedLayer line = layer_of(whole, rows_of(kWidth, {{}, {2, 9, 11, 14}, {}}));
   const ComparedLayer above = layer_of(whole, whole);
   const LooseInWindow pieces = found(nullptr, line, &above);
   EXPECT_EQ(pieces.count, 0);
@@ -52,9 +48,9 @@ TEST(LooseInWindow, APieceHeldByTheLayerAboveIsNone) {
 }
 
 TEST(LooseInWindow, ALayerThatDoesNotPrintHasTheGap) {
-  const RunLayer pin = rows_of({{}, {4, 8}, {}});
+  const RunLayer pin = rows_of(kWidth, {{}, {4, 8}, {}});
   const ComparedLayer below = layer_of(pin, pin);
-  const ComparedLayer above = layer_of(pin, rows_of({{}, {4, 7}, {}}));
+  const ComparedLayer above = layer_of(pin, rows_of(kWidth, {{}, {4, 7}, {}}));
   const LooseInWindow pieces = found(&below, layer_of(pin, kNothing), &above);
   EXPECT_EQ(pieces.count, 1);
   EXPECT_EQ(pieces.loose, kNothing);
@@ -62,9 +58,9 @@ TEST(LooseInWindow, ALayerThatDoesNotPrintHasTheGap) {
 }
 
 TEST(LooseInWindow, TwoPartsAreNoneWhetherTheyPrintApartOrTogether) {
-  const RunLayer parts = rows_of({{}, {2, 6, 10, 14}, {}});
+  const RunLayer parts = rows_of(kWidth, {{}, {2, 6, 10, 14}, {}});
   EXPECT_EQ(found(nullptr, layer_of(parts, parts), nullptr).count, 0);
-  EXPECT_EQ(found(nullptr, layer_of(parts, rows_of({{}, {2, 14}, {}})), nullptr).count, 0);
+  EXPECT_EQ(found(nullptr, layer_of(parts, rows_of(kWidth, {{}, {2, 14}, {}})), nullptr).count, 0);
 }
 
 }  // namespace
