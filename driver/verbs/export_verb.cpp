@@ -5,6 +5,7 @@
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <array>
+#include <filesystem>
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <string>
@@ -12,15 +13,17 @@
 
 #include "driver/base/console.h"
 #include "driver/base/files.h"
+#include "driver/base/give_name.h"
 #include "driver/export/export_3mf.h"
+#include "driver/export/export_cuberille.h"
 #include "driver/export/export_stack.h"
 #include "driver/export/export_zip.h"
 #include "driver/job/mask_source.h"
+#include "driver/job/parts.h"
 #include "driver/job/print_stream.h"
 #include "driver/verbs/verbs.h"
 #include "driver/viewer/viewer.h"
 #include "slicer/base/error.h"
-#include "slicer/stack/cuberille.h"
 
 namespace binderjet {
 namespace {
@@ -36,16 +39,6 @@ struct ExportOptions {
   std::string separate;
   bool full_bed = false;
 };
-
-void export_cuberille(const MaskSource& job, const std::string& path, const Console& console) {
-  CuberilleWriter writer(path, job.header->grid);
-  Progress progress(console, "writing", job.size_px[2]);
-  for (int index = 0; index < job.size_px[2]; ++index) {
-    writer.add(job.read(index));
-    progress.advance(index + 1);
-  }
-  writer.finish();
-}
 
 // What can be written: stacks of images, in a folder, and single files.
 enum class Output {
@@ -120,30 +113,46 @@ NamedOutput only_output(const ExportOptions& options) {
   return named.front();
 }
 
-void write(const MaskSource& job, const NamedOutput& named, bool full_bed, const Console& console) {
+// The job's models as one; a page goes without if they are gone.
+std::shared_ptr<const Mesh> target_of(Output output, const MaskSource& job,
+                                      const Console& console) {
+  if (output != Output::kTarget && output != Output::kHtml) return nullptr;
+  try {
+    return reload_parts(*job.header, std::filesystem::path(job.path).parent_path().string(),
+                        console.work());
+  } catch (const Error& error) {
+    if (output == Output::kTarget || error.kind() != ErrorKind::kBadInput) throw;
+    console.warning(fmt::format("{}; the page goes without the target", error.what()));
+    return nullptr;
+  }
+}
+
+GiveName write(const MaskSource& job, const std::shared_ptr<const Mesh>& target,
+               const NamedOutput& named, bool full_bed, const Work& work) {
   const std::string& path = named.path;
+  const JobHeader& header = *job.header;
   switch (named.output) {
     case Output::kMasks:
-      return export_masks(job, path, full_bed, console);
+      return export_masks(job, path, full_bed, work);
     case Output::kColor:
-      return export_color(job, path, console);
+      return export_color(job, path, work);
     case Output::kTarget:
-      return export_target(job, path, console);
+      return export_target(job, target, path, work);
     case Output::kPrinted:
-      return write_printed(job,
-                           PrinterModel(job.header->profile.effects, job.header->grid, job.place()),
-                           job.header->grid, path, console);
+      return write_printed(job, PrinterModel(header.profile.effects, header.grid, job.place()),
+                           header.grid, path, work);
     case Output::kColorPlanes:
-      return export_planes(job, path, console);
+      return export_planes(job, path, work);
     case Output::kCuberille:
-      return export_cuberille(job, path, console);
+      return export_cuberille(job, path, work);
     case Output::kHtml:
-      return write_text(path, viewer_page(job, console));
+      return write_unnamed({path, viewer_page(job, target, work)});
     case Output::k3mf:
-      return export_3mf(job, path, console);
+      return export_3mf(job, path, work);
     case Output::kZip:
-      return export_zip(job, path, full_bed, console);
+      break;
   }
+  return export_zip(job, path, full_bed, work);
 }
 
 void run(const ExportOptions& options, const Console& console) {
@@ -155,7 +164,8 @@ void run(const ExportOptions& options, const Console& console) {
     throw Error(ErrorKind::kUsage, "--full-bed", "is for masks only");
   }
   const MaskSource job = open_job(options.job, console);
-  write(job, named, options.full_bed, console);
+  const auto target = target_of(named.output, job, console);
+  write(job, target, named, options.full_bed, console.work())();
   console.result({{"out", named.path}, {"what", word(named.output)}, {"layers", job.size_px[2]}},
                  fmt::format("{}: {} layers", named.path, job.size_px[2]));
 }

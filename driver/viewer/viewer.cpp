@@ -15,11 +15,9 @@
 #include <vector>
 
 #include "driver/base/html.h"
-#include "driver/job/parts.h"
 #include "driver/job/print_stream.h"
 #include "driver/viewer/run_codec.h"
 #include "driver/viewer/viewer_page.h"
-#include "slicer/base/error.h"
 #include "slicer/model/printer_model.h"
 #include "slicer/stack/png.h"
 #include "slicer/voxels/slicing_operator.h"
@@ -72,15 +70,6 @@ int color_step(const MaskSource& job) {
   int step = 1;
   while (step < kMost && color_png(job, job.size_px[2] / 2, step).size() > kLayerBytes) ++step;
   return step;
-}
-
-std::shared_ptr<const Mesh> target_of(const MaskSource& job, const Console& console) {
-  try {
-    return reload_parts(*job.header, std::filesystem::path(job.path).parent_path().string());
-  } catch (const Error& error) {
-    console.warning(fmt::format("{}; the page goes without the target", error.what()));
-    return nullptr;
-  }
 }
 
 nlohmann::ordered_json description(const MaskSource& job, bool target, int step) {
@@ -146,17 +135,16 @@ class ChunkWriter {
   std::string text_;
 };
 
-std::string data(const MaskSource& job, const Console& console) {
+std::string data(const MaskSource& job, const std::shared_ptr<const Mesh>& mesh, const Work& work) {
   const JobHeader& header = *job.header;
-  const auto mesh = target_of(job, console);
   const PrinterModel model(header.profile.effects, header.grid, job.place());
-  const auto printed = printed_stream(job, model);
+  const auto printed = printed_stream(job, model, work);
   const auto target = mesh ? voxelize(mesh, header.grid, header.box, job.layers()) : nullptr;
   const int step = color_step(job);
 
   std::string page = fmt::format("<script type=\"application/json\" id=\"job\">{}</script>\n",
                                  inline_json(description(job, mesh != nullptr, step)));
-  Progress progress(console, "writing", job.size_px[2]);
+  Stage stage(work, "drawing layers", job.size_px[2], "layers");
   int done = 0;
   for (int number = 0; printed->rest().size() > 0; ++number) {
     const auto prints = printed->next(kChunkLayers);
@@ -167,7 +155,7 @@ std::string data(const MaskSource& job, const Console& console) {
       if (step > 0) add_data(fmt::format("color{}", done), color_png(job, done, step), page);
     }
     add_data(fmt::format("chunk{}", number), deflated(chunk.text()), page);
-    progress.advance(done);
+    stage.reach(done);
   }
   return page;
 }
@@ -178,10 +166,11 @@ void fill(std::string& page, const std::string& mark, const std::string& text) {
 
 }  // namespace
 
-std::string viewer_page(const MaskSource& job, const Console& console) {
+std::string viewer_page(const MaskSource& job, const std::shared_ptr<const Mesh>& mesh,
+                        const Work& work) {
   std::string page = kViewerHtml;
   fill(page, "<!--SCRIPT-->", kViewerScript);
-  fill(page, "<!--JOB-->", data(job, console));
+  fill(page, "<!--JOB-->", data(job, mesh, work));
   return page;
 }
 

@@ -138,8 +138,8 @@ std::int64_t merge_near_points(Mesh& mesh, double distance) {
 
 class Repairer {
  public:
-  Repairer(Mesh& mesh, const std::string& where, double wall)
-      : mesh_(mesh), where_(where), wall_(wall) {}
+  Repairer(Mesh& mesh, const std::string& where, double wall, const Work& work)
+      : mesh_(mesh), where_(where), wall_(wall), work_(work) {}
 
   Repair repair() {
     note(drop_repeated_corners(mesh_), "dropped", "degenerate face", "degenerate faces");
@@ -153,7 +153,9 @@ class Repairer {
       note(drop_if_closed(), "dropped", "duplicate face", "duplicate faces");
       edges = count_edges(mesh_);
     }
+    work_.check();
     turn_outward();
+    work_.check();
     remark(edges);
     return std::move(result_);
   }
@@ -171,6 +173,7 @@ class Repairer {
   // Keeps what `change` does to the mesh only if less boundary is left; returns its count.
   template <typename Change>
   std::int64_t attempt(const Change& change) {
+    work_.check();
     if (open_ == 0) return 0;
     Mesh changed = mesh_;
     const std::int64_t count = change(changed);
@@ -223,6 +226,7 @@ class Repairer {
   }
 
   void fill() {
+    work_.check();
     Mesh filled = mesh_;
     const ClosedHoles lids = close_holes(filled);
     if (lids.area > kMaxInvented * area_) {
@@ -311,6 +315,7 @@ class Repairer {
   Mesh& mesh_;
   const std::string& where_;
   double wall_;
+  Work work_;
   Repair result_;
   std::size_t open_ = 0;
   double area_ = 0;
@@ -318,8 +323,8 @@ class Repairer {
 
 }  // namespace
 
-Repair repair_mesh(Mesh& mesh, const std::string& where, double wall) {
-  return Repairer(mesh, where, wall).repair();
+Repair repair_mesh(Mesh& mesh, const std::string& where, double wall, const Work& work) {
+  return Repairer(mesh, where, wall, work).repair();
 }
 
 }  // namespace binderjet
