@@ -276,15 +276,36 @@ class Repairer {
   bool has_volume(double whole) const {
     const Shells shells = shells_by_points(mesh_);
     if (shells.count < 2) return false;
-    std::vector<double> volumes(static_cast<std::size_t>(shells.count), 0.0);
-    Mesh one;
-    one.points = mesh_.points;
-    for (std::size_t t = 0; t < mesh_.triangles.size(); ++t) {
-      one.triangles = {mesh_.triangles[t]};
-      volumes[static_cast<std::size_t>(shells.of_triangle[t])] += signed_volume(one);
-    }
+    const std::vector<double> volumes = volumes_of(mesh_, shells);
     return std::any_of(volumes.begin(), volumes.end(),
                        [&](double v) { return std::abs(v) > kMinVolume * whole; });
+  }
+
+  // A cavity hangs together by itself, but it is no piece: all that is within it is outside.
+  int count_pieces() const {
+    const Shells shells = shells_by_points(mesh_);
+    if (shells.count < 2) return shells.count;
+    const auto is_inward = [](double volume) { return volume < 0; };
+    std::vector<double> volumes = volumes_of(mesh_, shells);
+    if (std::any_of(volumes.begin(), volumes.end(), is_inward)) {
+      Mesh outward = mesh_;  // a piece inside out is one all the same
+      turn_shells_outward(outward);
+      volumes = volumes_of(outward, shells);
+    }
+    return shells.count -
+           static_cast<int>(std::count_if(volumes.begin(), volumes.end(), is_inward));
+  }
+
+  // The signed volume of each shell.
+  static std::vector<double> volumes_of(const Mesh& mesh, const Shells& shells) {
+    std::vector<double> volumes(static_cast<std::size_t>(shells.count), 0.0);
+    Mesh one;
+    one.points = mesh.points;
+    for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
+      one.triangles = {mesh.triangles[t]};
+      volumes[static_cast<std::size_t>(shells.of_triangle[t])] += signed_volume(one);
+    }
+    return volumes;
   }
 
   void remark(const EdgeCounts& edges) {
@@ -300,7 +321,7 @@ class Repairer {
                                   "; all that the surface winds around is solid");
       }
     }
-    const int pieces = shells_by_points(mesh_).count;
+    const int pieces = count_pieces();
     if (pieces > 1) {
       result_.remarks.push_back(fmt::format("has {} pieces that do not touch", pieces));
     }
