@@ -8,6 +8,7 @@
 //                      the plain mask             to the plain mask of the layer below
 //                      the mask                   to the plain mask
 //                      the print                  to the layer's highest slice
+//   and enhanced       the plain mask's print     to the layer's highest slice
 //   without a target   the mask, and the print    to the same of the layer below
 //
 // For the first layer of a chunk the layer below is powder, so a chunk can be read by itself. Color
