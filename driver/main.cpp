@@ -7,7 +7,7 @@
 #include <exception>
 #include <new>
 
-#include "driver/base/console.h"
+#include "driver/base/interrupt.h"
 #include "driver/verbs/program.h"
 #include "slicer/base/error.h"
 

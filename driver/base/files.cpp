@@ -43,12 +43,15 @@ std::string read_text(const std::string& path) {
 void write_text(const std::string& path, const std::string& text) { write_texts({{path, text}}); }
 
 void write_texts(const std::vector<TextFile>& files) {
-  std::vector<std::unique_ptr<WholeFile>> written;
-  for (const TextFile& file : files) {
-    written.push_back(std::make_unique<WholeFile>(file.path));
-    write_file(written.back()->part(), std::as_bytes(std::span(file.text)));
-  }
-  for (const auto& file : written) file->keep();
+  std::vector<GiveName> written;
+  for (const TextFile& file : files) written.push_back(write_unnamed(file));
+  for (const GiveName& give_name : written) give_name();
+}
+
+GiveName write_unnamed(const TextFile& file) {
+  const auto written = std::make_shared<WholeFile>(file.path);
+  write_file(written->part(), std::as_bytes(std::span(file.text)));
+  return [written] { written->keep(); };
 }
 
 std::string file_hash(const std::string& path) {

@@ -6,6 +6,8 @@
 #include <string>
 #include <vector>
 
+#include "driver/base/give_name.h"
+
 namespace binderjet {
 
 // The file's bytes; Error{kBadInput} with the path if it cannot be read.
@@ -19,6 +21,8 @@ struct TextFile {
   std::string path, text;
 };
 void write_texts(const std::vector<TextFile>& files);
+// Writes the file, and returns what gives it its name.
+[[nodiscard]] GiveName write_unnamed(const TextFile& file);
 
 // XXH3-64 of the file's bytes, as 16 hexadecimal digits; read in pieces.
 std::string file_hash(const std::string& path);

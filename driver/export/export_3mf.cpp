@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <array>
+#include <memory>
 
 #include "driver/base/layer_blocks.h"
 #include "driver/job/picture_rows.h"
@@ -139,33 +140,34 @@ std::string model_text(const MaskSource& job) {
 
 }  // namespace
 
-void export_3mf(const MaskSource& job, const std::string& path, const Console& console) {
+GiveName export_3mf(const MaskSource& job, const std::string& path, const Work& work) {
   const auto [width, height, layers] = job.size_px;
   const std::array<double, 2> pitch_mm = {job.pitch_mm[0], job.pitch_mm[1]};
-  ZipWriter zip(path);
-  zip.add("[Content_Types].xml", std::string(kXml) + kContentTypes);
-  zip.add("_rels/.rels", std::string(kXml) + kRelationships +
-                             relationship("model", kModelPart, "3dmodel") + "</Relationships>\n");
-  zip.add("3D/_rels/3dmodel.model.rels", sheet_relationships(job));
-  zip.add(kModelPart, model_text(job));
+  const auto zip = std::make_shared<ZipWriter>(path);
+  zip->add("[Content_Types].xml", std::string(kXml) + kContentTypes);
+  zip->add("_rels/.rels", std::string(kXml) + kRelationships +
+                              relationship("model", kModelPart, "3dmodel") + "</Relationships>\n");
+  zip->add("3D/_rels/3dmodel.model.rels", sheet_relationships(job));
+  zip->add(kModelPart, model_text(job));
 
-  Progress progress(console, "writing masks", layers);
+  Stage stage(work, "writing masks", layers, "layers");
   encode_in_order(
-      layers, progress,
+      layers, stage,
       [&, w = width, h = height](int index) {
         return encode_png_mask(back_first(job.packed(index), h), w, h, pitch_mm);
       },
-      [&](int index, const auto& png) { zip.add(sheet(kMask, index), png); });
+      [&](int index, const auto& png) { zip->add(sheet(kMask, index), png); });
   if (job.color) {
-    Progress colors(console, "writing color", layers);
+    Stage colors(work, "writing color", layers, "layers");
     encode_in_order(
         layers, colors,
         [&, w = width, h = height](int index) {
           return encode_png_rgb(back_first(job.color(index), h), w, h, pitch_mm);
         },
-        [&](int index, const auto& png) { zip.add(sheet(kColor, index), png); });
+        [&](int index, const auto& png) { zip->add(sheet(kColor, index), png); });
   }
-  zip.finish();
+  zip->complete();
+  return [zip] { zip->finish(); };
 }
 
 }  // namespace binderjet

@@ -10,12 +10,13 @@
 
 #include <string>
 
-#include "driver/base/console.h"
+#include "driver/base/give_name.h"
 #include "driver/job/mask_source.h"
+#include "slicer/base/work.h"
 
 namespace binderjet {
 
-// Writes the archive whole or not at all, layer by layer.
-void export_3mf(const MaskSource& job, const std::string& path, const Console& console);
+// Writes the archive layer by layer, and returns what gives it its name.
+[[nodiscard]] GiveName export_3mf(const MaskSource& job, const std::string& path, const Work& work);
 
 }  // namespace binderjet

@@ -1,12 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "driver/export/export_stack.h"
 
-#include <array>
-#include <filesystem>
-#include <memory>
+#include <oneapi/tbb/parallel_for.h>
+
+#include <utility>
 
 #include "driver/base/layer_blocks.h"
-#include "driver/job/parts.h"
 #include "slicer/base/error.h"
 #include "slicer/color/separate.h"
 #include "slicer/stack/slice_stack.h"
@@ -36,17 +35,19 @@ void demand_color(const MaskSource& job) {
   throw Error(ErrorKind::kUsage, job.path, "has no color; its models had none when it was sliced");
 }
 
-void export_masks(const MaskSource& job, const std::string& folder, bool full_bed,
-                  const Console& console) {
+GiveName export_masks(const MaskSource& job, const std::string& folder, bool full_bed,
+                      const Work& work) {
   const StackInfo info = mask_info(job, full_bed);
-  StackWriter stack(folder, info);
-  Progress progress(console, "writing", info.size[2]);
-  for_each_layer(info.size[2], progress,
-                 [&](int index) { stack.write_packed(index, mask_bits(job, info, index)); });
-  stack.finish();
+  const auto stack = std::make_shared<StackWriter>(folder, info);
+  Stage stage(work, "writing masks", info.size[2], "layers");
+  for_each_layer(info.size[2], stage,
+                 [&](int index) { stack->write_packed(index, mask_bits(job, info, index)); });
+  stack->complete();
+  return [stack] { stack->finish(); };
 }
 
-void export_target(const MaskSource& job, const std::string& folder, const Console& console) {
+GiveName export_target(const MaskSource& job, std::shared_ptr<const Mesh> mesh,
+                       const std::string& folder, const Work& work) {
   const JobHeader& header = *job.header;
   const int rz = header.grid.detail_vx[2];
   StackInfo info = job.stack_info(StackKind::kTarget);
@@ -55,52 +56,55 @@ void export_target(const MaskSource& job, const std::string& folder, const Conso
     info.pitch_mm[axis] = header.grid.voxel_mm(static_cast<int>(axis));
   }
   info.first *= rz;
-  const auto mesh = reload_parts(header, std::filesystem::path(job.path).parent_path().string());
-  const auto target = voxelize(mesh, header.grid, header.box, job.layers());
+  const auto target = voxelize(std::move(mesh), header.grid, header.box, job.layers());
 
-  StackWriter stack(folder, info);
-  Progress progress(console, "writing", job.size_px[2]);
+  const auto stack = std::make_shared<StackWriter>(folder, info);
+  Stage stage(work, "writing target", job.size_px[2], "layers");
   int done = 0;
   while (target->rest().size() > 0) {
     const auto block = target->next(kBlockLayers);
     oneapi::tbb::parallel_for(0, static_cast<int>(block.size()) * rz, [&](int s) {
-      stack.write(
+      stack->write(
           done * rz + s,
           block[static_cast<std::size_t>(s / rz)]->slices[static_cast<std::size_t>(s % rz)]);
     });
     done += static_cast<int>(block.size());
-    progress.advance(done);
+    stage.reach(done);
   }
-  stack.finish();
+  stack->complete();
+  return [stack] { stack->finish(); };
 }
 
-void export_color(const MaskSource& job, const std::string& folder, const Console& console) {
+GiveName export_color(const MaskSource& job, const std::string& folder, const Work& work) {
   demand_color(job);
-  StackWriter stack(folder, job.stack_info(StackKind::kColor));
-  Progress progress(console, "writing", job.size_px[2]);
-  for_each_layer(job.size_px[2], progress,
-                 [&](int index) { stack.write_rgb(index, job.color(index)); });
-  stack.finish();
+  const auto stack = std::make_shared<StackWriter>(folder, job.stack_info(StackKind::kColor));
+  Stage stage(work, "writing color", job.size_px[2], "layers");
+  for_each_layer(job.size_px[2], stage,
+                 [&](int index) { stack->write_rgb(index, job.color(index)); });
+  stack->complete();
+  return [stack] { stack->finish(); };
 }
 
-void export_planes(const MaskSource& job, const std::string& folder, const Console& console) {
+GiveName export_planes(const MaskSource& job, const std::string& folder, const Work& work) {
   demand_color(job);
-  constexpr std::array<const char*, 3> kInks = {"cyan", "magenta", "yellow"};
-  std::vector<std::unique_ptr<StackWriter>> stacks;
+  std::vector<std::shared_ptr<StackWriter>> stacks;
   for (const char* ink : kInks) {
     StackInfo info = job.stack_info(StackKind::kColor);
     info.files = std::string(ink) + "_%06d.png";
-    stacks.push_back(std::make_unique<StackWriter>(folder + "/" + ink, info));
+    stacks.push_back(std::make_shared<StackWriter>(folder + "/" + ink, info));
   }
-  Progress progress(console, "writing", job.size_px[2]);
-  for_each_layer(job.size_px[2], progress, [&](int index) {
+  Stage stage(work, "writing drops", job.size_px[2], "layers");
+  for_each_layer(job.size_px[2], stage, [&](int index) {
     std::vector<std::byte> rgb = job.color(index);
     whiten_outside(job.read(index), rgb);
     const std::array<RunLayer, 3> planes =
         separate_cmy(rgb, job.size_px[0], job.size_px[1], job.first + index);
     for (std::size_t c = 0; c < 3; ++c) stacks[c]->write(index, planes[c]);
   });
-  for (const auto& stack : stacks) stack->finish();
+  for (const auto& stack : stacks) stack->complete();
+  return [stacks] {
+    for (const auto& stack : stacks) stack->finish();
+  };
 }
 
 }  // namespace binderjet

@@ -2,12 +2,16 @@
 // A job's layers as slice stacks: folders of PNGs with stack.json.
 #pragma once
 
+#include <array>
 #include <cstddef>
+#include <memory>
 #include <string>
 #include <vector>
 
-#include "driver/base/console.h"
+#include "driver/base/give_name.h"
 #include "driver/job/mask_source.h"
+#include "slicer/base/work.h"
+#include "slicer/mesh/mesh.h"
 
 namespace binderjet {
 
@@ -18,12 +22,17 @@ std::vector<std::byte> mask_bits(const MaskSource& job, const StackInfo& frame, 
 // Error{kUsage} if the job has no color.
 void demand_color(const MaskSource& job);
 
-void export_masks(const MaskSource& job, const std::string& folder, bool full_bed,
-                  const Console& console);
-// Every slice of the voxels that are wanted, made again from the job's models.
-void export_target(const MaskSource& job, const std::string& folder, const Console& console);
-void export_color(const MaskSource& job, const std::string& folder, const Console& console);
-// Three stacks of drops: cyan, magenta and yellow, each in a folder of its name.
-void export_planes(const MaskSource& job, const std::string& folder, const Console& console);
+// These write a stack of the job's layers, and return what gives the folder its name.
+[[nodiscard]] GiveName export_masks(const MaskSource& job, const std::string& folder, bool full_bed,
+                                    const Work& work);
+// Every slice of the voxels that are wanted; `mesh` is the job's models as one (reload_parts()).
+[[nodiscard]] GiveName export_target(const MaskSource& job, std::shared_ptr<const Mesh> mesh,
+                                     const std::string& folder, const Work& work);
+[[nodiscard]] GiveName export_color(const MaskSource& job, const std::string& folder,
+                                    const Work& work);
+// Three stacks of drops, each in a folder of its ink's name.
+inline constexpr std::array<const char*, 3> kInks = {"cyan", "magenta", "yellow"};
+[[nodiscard]] GiveName export_planes(const MaskSource& job, const std::string& folder,
+                                     const Work& work);
 
 }  // namespace binderjet

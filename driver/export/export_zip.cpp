@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <memory>
 #include <nlohmann/json.hpp>
 
 #include "driver/base/layer_blocks.h"
@@ -52,22 +53,23 @@ std::string nanodlp_meta() {
 
 }  // namespace
 
-void export_zip(const MaskSource& job, const std::string& path, bool full_bed,
-                const Console& console) {
+GiveName export_zip(const MaskSource& job, const std::string& path, bool full_bed,
+                    const Work& work) {
   const StackInfo frame = mask_info(job, full_bed);
   const auto [width, height, layers] = frame.size;
-  ZipWriter zip(path);
-  zip.add("meta.json", nanodlp_meta());
-  zip.add("manifest.uvtools", uvtools_manifest(frame));
-  Progress progress(console, "writing", layers);
+  const auto zip = std::make_shared<ZipWriter>(path);
+  zip->add("meta.json", nanodlp_meta());
+  zip->add("manifest.uvtools", uvtools_manifest(frame));
+  Stage stage(work, "writing pictures", layers, "layers");
   encode_in_order(
-      layers, progress,
+      layers, stage,
       [&, w = width, h = height](int index) {
         const RunLayer mask = unpack(mask_bits(job, frame, index), w, h);
         return encode_png_rgb(white_on_black(mask), w, h, {frame.pitch_mm[0], frame.pitch_mm[1]});
       },
-      [&](int index, const auto& png) { zip.add(fmt::format("{}.png", index + 1), png); });
-  zip.finish();
+      [&](int index, const auto& png) { zip->add(fmt::format("{}.png", index + 1), png); });
+  zip->complete();
+  return [zip] { zip->finish(); };
 }
 
 }  // namespace binderjet

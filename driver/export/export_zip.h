@@ -8,14 +8,15 @@
 
 #include <string>
 
-#include "driver/base/console.h"
+#include "driver/base/give_name.h"
 #include "driver/job/mask_source.h"
+#include "slicer/base/work.h"
 
 namespace binderjet {
 
-// White is binder; a picture's first row is the back of the bed. Writes the archive whole or not at
-// all, layer by layer.
-void export_zip(const MaskSource& job, const std::string& path, bool full_bed,
-                const Console& console);
+// White is binder; a picture's first row is the back of the bed. Writes the archive layer by layer,
+// and returns what gives it its name.
+[[nodiscard]] GiveName export_zip(const MaskSource& job, const std::string& path, bool full_bed,
+                                  const Work& work);
 
 }  // namespace binderjet

@@ -7,6 +7,7 @@
 #include <array>
 
 #include "driver/job/print_colors.h"
+#include "slicer/base/work.h"
 #include "slicer/layers/rows.h"
 #include "slicer/model/printer_model.h"
 #include "slicer/stack/indexed_png.h"
@@ -86,10 +87,12 @@ LayerPictures picture_layer(const MeasuredJob& job, const std::vector<EffectSpec
   const PrinterModel models[] = {{before, job.grid, job.place}, {after, job.grid, job.place}};
   const auto count = static_cast<std::size_t>(job.layers());
   std::vector<std::array<std::int64_t, 2>> wrong(count);
+  Stage stage(job.work, "drawing the report", job.layers(), "layers");
   oneapi::tbb::parallel_for(std::size_t{0}, count, [&](std::size_t k) {
     for (std::size_t m = 0; m < 2; ++m) {
       wrong[k][m] = unequal(*job.prints.front()[k], predicted(models[m], job, static_cast<int>(k)));
     }
+    stage.advance();
   });
   const auto gain = [](const std::array<std::int64_t, 2>& w) { return w[0] - w[1]; };
   auto shown = std::max_element(wrong.begin(), wrong.end(),

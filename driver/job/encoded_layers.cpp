@@ -53,8 +53,8 @@ Pipeline<EncodedLayer> colored(const Pipeline<MaskLayer>& masks, const JobHeader
 }  // namespace
 
 Pipeline<EncodedLayer> encoded_layers(const JobHeader& header, std::shared_ptr<const Mesh> mesh,
-                                      std::shared_ptr<const ColorField> color) {
-  const Pipeline<MaskLayer> masks = job_masks(header, std::move(mesh));
+                                      std::shared_ptr<const ColorField> color, const Work& work) {
+  const Pipeline<MaskLayer> masks = job_masks(header, std::move(mesh), work);
   return color ? colored(masks, header, std::move(color)) : encoded(masks);
 }
 

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "driver/job/job.h"
+#include "slicer/base/work.h"
 #include "slicer/color/color.h"
 #include "slicer/enhance/rules/mask_rules.h"
 #include "slicer/layers/pipeline.h"
@@ -23,6 +24,7 @@ struct EncodedLayer {
 
 // `color` is null where no part has any; `mesh` is the job's parts as one.
 Pipeline<EncodedLayer> encoded_layers(const JobHeader& header, std::shared_ptr<const Mesh> mesh,
-                                      std::shared_ptr<const ColorField> color);
+                                      std::shared_ptr<const ColorField> color,
+                                      const Work& work = {});
 
 }  // namespace binderjet

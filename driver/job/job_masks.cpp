@@ -52,9 +52,10 @@ std::string rule_warning(const RuleTally& tally, const MaskRules& rules) {
                      tally.layers == 1 ? "" : "s");
 }
 
-Pipeline<MaskLayer> job_masks(const JobHeader& header, std::shared_ptr<const Mesh> mesh) {
+Pipeline<MaskLayer> job_masks(const JobHeader& header, std::shared_ptr<const Mesh> mesh,
+                              const Work& work) {
   const Pipeline<MaskLayer> masks =
-      enhanced(header, voxel_layers(std::move(mesh), header.grid, header.box));
+      enhanced(header, voxel_layers(std::move(mesh), header.grid, header.box, work));
   return header.profile.mask.largest_px() > 1 ? obeying_masks(masks, header.profile.mask) : masks;
 }
 

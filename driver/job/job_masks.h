@@ -8,6 +8,7 @@
 #include <string>
 
 #include "driver/job/job.h"
+#include "slicer/base/work.h"
 #include "slicer/enhance/masks.h"
 
 namespace binderjet {
@@ -23,6 +24,7 @@ struct RuleTally {
 std::string rule_warning(const RuleTally& tally, const MaskRules& rules);
 
 // `mesh` is the job's parts as one.
-Pipeline<MaskLayer> job_masks(const JobHeader& header, std::shared_ptr<const Mesh> mesh);
+Pipeline<MaskLayer> job_masks(const JobHeader& header, std::shared_ptr<const Mesh> mesh,
+                              const Work& work = {});
 
 }  // namespace binderjet

@@ -19,8 +19,13 @@ constexpr double kPitchMm = 0.05;
 
 }  // namespace
 
-void write_scan_stack(const std::string& mesh, double layer_mm, const std::string& folder) {
-  MeshFile file = read_mesh(mesh);
+void write_scan_stack(const std::string& mesh, double layer_mm, const std::string& folder,
+                      const Work& work) {
+  MeshFile file = [&] {
+    const Stage stage(work, "reading scan");
+    return read_mesh(mesh);
+  }();
+  work.check();
   if (file.mesh.triangles.empty()) throw Error(ErrorKind::kBadInput, mesh, "holds no triangles");
   for (Point& point : file.mesh.points) {
     for (double& value : point) value *= file.unit_mm;
@@ -43,12 +48,14 @@ void write_scan_stack(const std::string& mesh, double layer_mm, const std::strin
   StackWriter stack(folder, info);
   const auto layers = voxelize(std::make_shared<const Mesh>(std::move(file.mesh)), grid, job,
                                LayerRange{0, job.size_px[2]});
+  Stage stage(work, "slicing scan", job.size_px[2], "slices");
   for (int done = 0; layers->rest().size() > 0;) {
     const auto block = layers->next(kBlockLayers);
     oneapi::tbb::parallel_for(0, static_cast<int>(block.size()), [&](int i) {
       stack.write(done + i, block[static_cast<std::size_t>(i)]->slices.front());
     });
     done += static_cast<int>(block.size());
+    stage.reach(done);
   }
   stack.finish();
 }

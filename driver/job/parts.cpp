@@ -12,11 +12,15 @@
 namespace binderjet {
 
 Part load_part(const std::string& file, std::optional<double> unit_mm, const Placement& placement,
-               bool with_paint) {
+               bool with_paint, const Work& work) {
   Part part;
   part.source.file = file;
   part.source.hash = file_hash(file);
-  MeshFile read = read_mesh(file);
+  MeshFile read = [&] {
+    const Stage stage(work, "reading model");
+    return read_mesh(file);
+  }();
+  work.check();
   if (file_hash(file) != part.source.hash) {
     throw Error(ErrorKind::kBadInput, file, "changed while it was read; try again");
   }
@@ -31,7 +35,8 @@ Part load_part(const std::string& file, std::optional<double> unit_mm, const Pla
   part.source.placement.unit_mm = unit_mm.value_or(read.unit_mm);
   const double wall =
       placement.wall_mm / (part.source.placement.unit_mm * part.source.placement.scale);
-  const Repair repair = repair_mesh(part.mesh, file, wall);
+  const Stage stage(work, "repairing model");
+  const Repair repair = repair_mesh(part.mesh, file, wall, work);
   for (const std::string& note : repair.notes) part.warnings.push_back(file + ": " + note);
   for (const std::string& remark : repair.remarks) part.warnings.push_back(file + ": " + remark);
   part.request.where = file;
@@ -48,7 +53,8 @@ Part load_part(const std::string& file, std::optional<double> unit_mm, const Pla
 
 std::shared_ptr<const ColorField> take_color(std::vector<Part>& parts, const Grid& grid,
                                              const ColorSettings& settings,
-                                             std::vector<std::string>& warnings) {
+                                             std::vector<std::string>& warnings, const Work& work) {
+  Stage stage(work, "reading color", static_cast<std::int64_t>(parts.size()), "models");
   std::vector<Source> sources;
   for (const Part& part : parts) sources.push_back(part.source);
   const std::array<int, 2> corner = lower_corner(sources);
@@ -70,6 +76,7 @@ std::shared_ptr<const ColorField> take_color(std::vector<Part>& parts, const Gri
     colored |= field.field != nullptr;
     if (!field.field) field.field = plain_field(kWhite);
     fields.push_back(std::move(field));
+    stage.advance();
   }
   return colored ? bed_field(std::move(fields)) : nullptr;
 }
@@ -98,24 +105,36 @@ Mesh merge_parts(std::vector<Part> parts, const Grid& grid) {
   return merged;
 }
 
-std::shared_ptr<const Mesh> reload_parts(const JobHeader& header, const std::string& folder) {
-  std::vector<Part> parts;
+std::vector<std::string> part_files(const JobHeader& header, const std::string& folder) {
+  std::vector<std::string> files;
   for (const Source& source : header.sources) {
-    std::string file = source.file;
+    std::error_code error;
+    const auto beside =
+        std::filesystem::path(folder) / std::filesystem::path(source.file).filename();
+    const bool moved =
+        !std::filesystem::exists(source.file, error) && std::filesystem::exists(beside, error);
+    files.push_back(moved ? beside.string() : source.file);
+  }
+  return files;
+}
+
+std::shared_ptr<const Mesh> reload_parts(const JobHeader& header, const std::string& folder,
+                                         const Work& work) {
+  const std::vector<std::string> files = part_files(header, folder);
+  std::vector<Part> parts;
+  for (std::size_t i = 0; i < files.size(); ++i) {
+    const Source& source = header.sources[i];
+    const std::string& file = files[i];
     std::error_code error;
     if (!std::filesystem::exists(file, error)) {
-      const auto beside = std::filesystem::path(folder) / std::filesystem::path(file).filename();
-      if (!std::filesystem::exists(beside, error)) {
-        throw Error(ErrorKind::kBadInput, file,
-                    "the model this job was made from is gone; put it back or beside the job");
-      }
-      file = beside.string();
+      throw Error(ErrorKind::kBadInput, file,
+                  "the model this job was made from is gone; put it back or beside the job");
     }
     if (file_hash(file) != source.hash) {
       throw Error(ErrorKind::kBadInput, file,
                   "has changed since this job was made from it; slice it again");
     }
-    Part part = load_part(file, source.placement.unit_mm, source.placement);
+    Part part = load_part(file, source.placement.unit_mm, source.placement, false, work);
     part.source = source;
     parts.push_back(std::move(part));
   }

@@ -30,7 +30,8 @@ void use_texture(const std::string& file, Paint& paint) {
 }
 
 // Reads the parts and decides where each stands: where --at says, else as they fit.
-std::vector<Part> load_parts(const SliceOptions& options, const JobHeader& header) {
+std::vector<Part> load_parts(const SliceOptions& options, const JobHeader& header,
+                             const Work& work) {
   if (options.at.size() > options.parts.size()) {
     throw Error(ErrorKind::kUsage, "--at", "is given more often than there are parts");
   }
@@ -42,7 +43,7 @@ std::vector<Part> load_parts(const SliceOptions& options, const JobHeader& heade
     if (i < options.at.size()) {
       placement.at_mm = bed_place(options.at[i]);
     }
-    parts.push_back(load_part(options.parts[i], unit_mm, placement, true));
+    parts.push_back(load_part(options.parts[i], unit_mm, placement, true, work));
     if (!options.texture.empty()) use_texture(options.texture, parts.back().paint);
     requests.push_back(parts.back().request);
   }
@@ -65,7 +66,8 @@ SlicePlan plan_slices(const SliceOptions& options, const Console& console) {
   header.enhance = options.enhance;
   header.passes = options.enhance == Enhancement::kPaper ? options.passes : 0;
   header.robust = options.robust;
-  std::vector<Part> parts = load_parts(options, header);
+  const Work work = console.work();
+  std::vector<Part> parts = load_parts(options, header, work);
 #ifdef __GLIBC__
   malloc_trim(0);  // what reading and repair freed, or it counts beside all that follows
 #endif
@@ -74,14 +76,14 @@ SlicePlan plan_slices(const SliceOptions& options, const Console& console) {
     plan.warnings.insert(plan.warnings.end(), part.warnings.begin(), part.warnings.end());
     plan.doubtful_size |= part.doubtful_size;
   }
-  plan.color = take_color(parts, header.grid, header.profile.color, plan.warnings);
+  plan.color = take_color(parts, header.grid, header.profile.color, plan.warnings, work);
   for (const std::string& warning : plan.warnings) console.warning(warning);
   plan.mesh = std::make_shared<const Mesh>(merge_parts(std::move(parts), header.grid));
   header.box = job_box(bounding_box(*plan.mesh).max, header.grid, lower_corner(header.sources),
                        PrinterModel(header.profile.effects, header.grid).reach().xy_vx);
   if (options.color_enhance) {
     if (!plan.color) plan.color = plain_field(kWhite);
-    plan.color = crease_field(std::move(plan.color), *plan.mesh, header.profile.color);
+    plan.color = crease_field(std::move(plan.color), *plan.mesh, header.profile.color, work);
   }
   header.color = plan.color != nullptr;
   header.color_enhanced = options.color_enhance;

@@ -7,6 +7,8 @@
 #include <cctype>
 #include <vector>
 
+#include "driver/manual/keys.h"
+
 namespace binderjet {
 namespace {
 
@@ -73,6 +75,17 @@ std::string options_section(const CLI::App& app) {
   return out;
 }
 
+std::string keys_sections(const std::string& verb) {
+  std::string out;
+  for (const KeyTable& table : key_tables(verb)) {
+    out += ".SH " + table.title + "\n" + roff(table.about) + "\n";
+    for (const Key& key : table.keys) {
+      out += ".TP\n\\fB" + roff(key.name) + "\\fR\n" + roff(key.meaning) + "\n";
+    }
+  }
+  return out;
+}
+
 std::string synopsis(const CLI::App& verb) {
   std::string out = fmt::format("\\fBbinderjet {}\\fR", roff(verb.get_name()));
   for (const CLI::Option* option : verb.get_options()) {
@@ -122,7 +135,9 @@ std::string program_page(const CLI::App& program) {
   out += exit_status();
   out +=
       ".SH ENVIRONMENT\n.TP\n\\fBBINDERJET_STATE\\fR\nwhere the journals of printed jobs are kept "
-      "(default: ~/.local/state/binderjet)\n";
+      "(default: ~/.local/state/binderjet)\n"
+      ".TP\n\\fBBINDERJET_PROGRESS_AFTER\\fR\nafter so many seconds of work a terminal shows "
+      "how far it is (default: 0.5); with 0 every step is shown\n";
   return out;
 }
 
@@ -139,6 +154,7 @@ std::string verb_page(const CLI::App& verb) {
     }
   }
   out += options_section(verb);
+  out += keys_sections(verb.get_name());
   out += exit_status();
   out += ".SH SEE ALSO\nbinderjet(1)\n";
   return out;

@@ -12,7 +12,7 @@ namespace binderjet {
 
 // binderjet.1: the verbs, exit status, files.
 std::string program_page(const CLI::App& program);
-// binderjet-VERB.1: what --help of the verb says.
+// binderjet-VERB.1: what --help of the verb says, and what its JSON and CSV mean (keys.h).
 std::string verb_page(const CLI::App& verb);
 // For /usr/share/bash-completion/completions.
 std::string bash_completion(const CLI::App& program);

@@ -60,6 +60,7 @@ void calibrate_gauges(const std::string& profile, const std::string& gauges,
   GaugeSummary summary;
   std::string written;
   std::vector<TextFile> files;
+  const Stage stage(console.work(), "tracing gauges");
   if (has_slots(table)) {
     const SlotFindings found =
         trace_slots(read_slots(table), declared.effects, declared.grid(std::nullopt));

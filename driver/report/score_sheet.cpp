@@ -18,23 +18,29 @@ namespace {
 
 // The excess under another model.
 double excess(const MaskSource& masks, const JobHeader& header,
-              const std::shared_ptr<const Mesh>& target, const PrinterModel& model) {
+              const std::shared_ptr<const Mesh>& target, const PrinterModel& model,
+              const Work& work, Stage& stage) {
   const auto wanted = voxelize(target, header.grid, header.box, masks.layers());
-  const auto printed = printed_stream(masks, model);
+  const auto printed = printed_stream(masks, model, work);
   VoxelCounts counts;
   while (wanted->rest().size() > 0) {
     const auto slices = wanted->next(kBlockLayers);
     const auto layers = printed->next(kBlockLayers);
     for (std::size_t i = 0; i < slices.size(); ++i) counts += count_voxels(*slices[i], *layers[i]);
+    stage.advance(static_cast<std::int64_t>(slices.size()));
   }
   return counts.excess();
 }
 
-MaskRegions regions_of(const MaskSource& masks) {
+MaskRegions regions_of(const MaskSource& masks, const Work& work) {
+  Stage stage(work, "measuring masks", masks.size_px[2], "layers");
   return oneapi::tbb::parallel_reduce(
       oneapi::tbb::blocked_range<int>(0, masks.size_px[2]), MaskRegions{},
       [&](const oneapi::tbb::blocked_range<int>& layers, MaskRegions sum) {
-        for (int k = layers.begin(); k < layers.end(); ++k) sum += mask_regions(masks.read(k));
+        for (int k = layers.begin(); k < layers.end(); ++k) {
+          sum += mask_regions(masks.read(k));
+          stage.advance();
+        }
         return sum;
       },
       [](MaskRegions a, const MaskRegions& b) { return a += b; });
@@ -50,34 +56,36 @@ nlohmann::ordered_json to_json(std::int64_t min_px) {
 
 ScoreSheet score_masks(const MaskSource& masks, const JobHeader& header,
                        const std::shared_ptr<const Mesh>& target,
-                       const std::vector<PrinterModel>& models, const std::string& label,
-                       const Console& console, const ScoreListener& listener) {
+                       const std::vector<PrinterModel>& models, const Work& work,
+                       const ScoreListener& listener) {
   ScoreSheet sheet;
-  sheet.masks = regions_of(masks);
+  sheet.masks = regions_of(masks, work);
   Scorer scorer(header.grid, masks.first);
   const auto layers =
       score_layers(voxelize(target, header.grid, header.box, masks.layers()),
-                   printed_stream(masks, models.front()), header.grid, masks.layers());
-  Progress progress(console, label, masks.size_px[2]);
-  int done = 0;
-  while (layers->rest().size() > 0) {
-    const auto block = layers->next(kBlockLayers);
-    std::vector<Fault> ended;
-    for (const Shared<LayerScore>& layer : block) {
-      const std::vector<Fault> here = scorer.add(*layer);
-      ended.insert(ended.end(), here.begin(), here.end());
+                   printed_stream(masks, models.front(), work), header.grid, masks.layers());
+  {
+    Stage stage(work, "scoring", masks.size_px[2], "layers");
+    while (layers->rest().size() > 0) {
+      const auto block = layers->next(kBlockLayers);
+      std::vector<Fault> ended;
+      for (const Shared<LayerScore>& layer : block) {
+        const std::vector<Fault> here = scorer.add(*layer);
+        ended.insert(ended.end(), here.begin(), here.end());
+      }
+      if (listener) listener(block, ended);
+      stage.advance(static_cast<std::int64_t>(block.size()));
     }
-    if (listener) listener(block, ended);
-    done += static_cast<int>(block.size());
-    progress.advance(done);
   }
   sheet.score = scorer.finish();
   if (listener) listener({}, sheet.score.last_faults);
 
   sheet.window_worst = sheet.score.voxels.excess();
   double sum = sheet.window_worst;
+  Stage corners(work, "scoring the process window",
+                static_cast<std::int64_t>(models.size() - 1) * masks.size_px[2], "layers");
   for (std::size_t m = 1; m < models.size(); ++m) {
-    const double corner = excess(masks, header, target, models[m]);
+    const double corner = excess(masks, header, target, models[m], work, corners);
     sum += corner;
     sheet.window_worst = std::max(sheet.window_worst, corner);
   }
@@ -86,18 +94,17 @@ ScoreSheet score_masks(const MaskSource& masks, const JobHeader& header,
 }
 
 MaskSource enhanced_masks(const MaskSource& job, JobHeader header,
-                          const std::shared_ptr<const Mesh>& target, const Console& console) {
+                          const std::shared_ptr<const Mesh>& target, const Work& work) {
   constexpr int kPaperPasses = 2;
   if (header.enhance == Enhancement::kPaper && header.passes == 0) header.passes = kPaperPasses;
-  const auto stream = job_masks(header, target).layers(job.layers());
-  Progress progress(console, "enhancing (" + std::string(word(header.enhance)) + ")",
-                    job.size_px[2]);
+  const auto stream = job_masks(header, target, work).layers(job.layers());
+  Stage stage(work, "making masks", job.size_px[2], "layers");
   const auto layers = std::make_shared<std::vector<RunLayer>>();
   while (stream->rest().size() > 0) {
     for (const Shared<MaskLayer>& layer : stream->next(kBlockLayers)) {
       layers->push_back(layer->mask);
     }
-    progress.advance(static_cast<int>(layers->size()));
+    stage.reach(static_cast<std::int64_t>(layers->size()));
   }
   MaskSource masks = job;
   masks.color = nullptr;

@@ -9,8 +9,8 @@
 #include <string>
 #include <vector>
 
-#include "driver/base/console.h"
 #include "driver/job/mask_source.h"
+#include "slicer/base/work.h"
 #include "slicer/enhance/rules/mask_regions.h"
 #include "slicer/mesh/mesh.h"
 #include "slicer/model/printer_model.h"
@@ -33,13 +33,13 @@ using ScoreListener =
 // `models` is process_window(): the first is the printer's own. The target is the job's.
 ScoreSheet score_masks(const MaskSource& masks, const JobHeader& header,
                        const std::shared_ptr<const Mesh>& target,
-                       const std::vector<PrinterModel>& models, const std::string& label,
-                       const Console& console, const ScoreListener& listener = {});
+                       const std::vector<PrinterModel>& models, const Work& work,
+                       const ScoreListener& listener = {});
 
 // The masks that the profile and the enhancement of this header make of the target in place of the
 // job's own.
 MaskSource enhanced_masks(const MaskSource& job, JobHeader header,
-                          const std::shared_ptr<const Mesh>& target, const Console& console);
+                          const std::shared_ptr<const Mesh>& target, const Work& work);
 
 nlohmann::ordered_json to_json(const ScoreSheet& sheet);
 

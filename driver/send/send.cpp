@@ -15,6 +15,7 @@
 #include <utility>
 #include <vector>
 
+#include "driver/base/interrupt.h"
 #include "driver/base/transport_errors.h"
 #include "driver/job/encoded_layers.h"
 #include "driver/job/job_masks.h"
@@ -79,11 +80,11 @@ constexpr std::size_t kQueuedLayers = 2;
 class ComputedLayers : public LayerSource {
  public:
   ComputedLayers(const JobHeader& header, std::shared_ptr<const Mesh> mesh,
-                 std::shared_ptr<const ColorField> color, int first)
+                 std::shared_ptr<const ColorField> color, int first, const Work& work)
       : queue_(kQueuedLayers),
         mask_rules_(header.profile.mask),
-        thread_([this, header, mesh = std::move(mesh), color = std::move(color), first] {
-          compute(header, mesh, color, first);
+        thread_([this, header, mesh = std::move(mesh), color = std::move(color), first, work] {
+          compute(header, mesh, color, first, work);
         }) {}
   ~ComputedLayers() override {
     queue_.close();
@@ -95,9 +96,10 @@ class ComputedLayers : public LayerSource {
 
  private:
   void compute(const JobHeader& header, const std::shared_ptr<const Mesh>& mesh,
-               const std::shared_ptr<const ColorField>& color, int first) {
+               const std::shared_ptr<const ColorField>& color, int first, const Work& work) {
     try {
-      const auto stream = encoded_layers(header, mesh, color).layers({first, header.layers()});
+      const auto stream =
+          encoded_layers(header, mesh, color, work).layers({first, header.layers()});
       while (stream->rest().size() > 0) {
         for (const Shared<EncodedLayer>& layer : stream->next(kStreamBlock)) {
           rules_.add(layer->rule_changes);
@@ -124,16 +126,19 @@ void send_layers(const Console& console, const std::string& uri, const JobTicket
   int first = 0;
   std::string warning;
   try {
-    if (resumed.empty()) {
-      id = value_or_throw(backend->start(ticket));
-    } else {
-      first = value_or_throw(backend->resume(id, ticket));
+    {
+      const Stage stage(console.work(), "opening printer");
+      if (resumed.empty()) {
+        id = value_or_throw(backend->start(ticket));
+      } else {
+        first = value_or_throw(backend->resume(id, ticket));
+      }
     }
-    Progress progress(console, "printing", ticket.layer_count);
+    Stage stage(console.work(), "printing", ticket.layer_count, "layers", first);
     // Nothing is computed where nothing is left to send.
     const auto source = first < ticket.layer_count ? open(first) : nullptr;
     for (int layer = first; layer < ticket.layer_count; ++layer) {
-      progress.advance(layer);
+      stage.reach(layer);
       const std::vector<std::byte> records = source->next(layer);
       value_or_throw(backend->send(layer, records));
       bytes += records.size();
@@ -167,7 +172,10 @@ std::string absolute_path(const std::string& path) {
 
 void send_file(const Console& console, const std::string& job_path, const std::string& uri,
                const std::string& resumed) {
-  const JobReader job = open_whole_job(job_path);
+  const JobReader job = [&] {
+    const Stage stage(console.work(), "reading job");
+    return open_whole_job(job_path);
+  }();
   const JobTicket ticket{job.header(), job_layer_count(job), fs::path(job_path).filename().string(),
                          absolute_path(job_path)};
   send_layers(console, uri, ticket, resumed,
@@ -235,8 +243,9 @@ void send_parts(const Console& console, const SliceOptions& options, const std::
   const std::string& part = options.parts.front();
   const JobTicket ticket{to_text(plan.header), plan.header.layers(),
                          fs::path(part).filename().string(), absolute_path(part)};
-  send_layers(console, uri, ticket, "", [&plan](int first) {
-    return std::make_unique<ComputedLayers>(plan.header, plan.mesh, plan.color, first);
+  send_layers(console, uri, ticket, "", [&](int first) {
+    return std::make_unique<ComputedLayers>(plan.header, plan.mesh, plan.color, first,
+                                            console.work());
   });
 }
 
@@ -254,7 +263,8 @@ void resume_job(const Console& console, const std::string& id, const std::string
   const JobTicket ticket{text, header.layers(), fs::path(source).filename().string(), source};
   send_layers(console, uri, ticket, id, [&](int first) {
     return std::make_unique<ComputedLayers>(
-        header, reload_parts(header, fs::path(source).parent_path().string()), nullptr, first);
+        header, reload_parts(header, fs::path(source).parent_path().string(), console.work()),
+        nullptr, first, console.work());
   });
 }
 

@@ -43,21 +43,24 @@ struct CalibrateOptions {
 // The masks of a job and what was measured of it, registered to what the profile predicts.
 MeasuredJob read_job(const std::string& name, const std::string& path,
                      const std::vector<std::string>& stacks, const Profile& profile,
-                     const std::string& folder, const Console& console, Progress& progress,
-                     int& done) {
+                     const std::string& folder, const Console& console) {
   const MaskSource source = open_masks(path, console);
   MeasuredJob job;
   job.name = name;
   job.grid = {source.pitch_mm, profile.detail_vx};
   job.place = source.place();
   job.first_layer = source.first;
-  job.on_check = check_interrupt;
+  job.work = console.work();
   const PrinterModel model(profile.effects, job.grid, job.place);
-  const auto stream = printed_stream(source, model);
   std::vector<RunLayer> predicted;
-  for (int k = 0; k < source.size_px[2]; ++k) {
-    job.masks.push_back(std::make_shared<const RunLayer>(source.read(k)));
-    predicted.push_back(*stream->next(1).front());
+  {
+    Stage stage(job.work, "predicting", source.size_px[2], "layers");
+    const auto stream = printed_stream(source, model, job.work);
+    for (int k = 0; k < source.size_px[2]; ++k) {
+      job.masks.push_back(std::make_shared<const RunLayer>(source.read(k)));
+      predicted.push_back(*stream->next(1).front());
+      stage.advance();
+    }
   }
   StackInfo frame = source.stack_info(StackKind::kPrinted);
   for (std::size_t axis = 0; axis < 2; ++axis) {
@@ -68,16 +71,15 @@ MeasuredJob read_job(const std::string& name, const std::string& path,
     std::string stack = path_of_scan;
     if (fs::is_regular_file(stack)) {  // a mesh
       stack = fmt::format("{}/{}.slices", folder, fs::path(path_of_scan).filename().string());
-      write_scan_stack(path_of_scan, job.grid.pitch_mm[2], stack);
+      write_scan_stack(path_of_scan, job.grid.pitch_mm[2], stack, job.work);
     }
-    Measured measured = read_measured(stack, frame, predicted, check_interrupt);
+    Measured measured = read_measured(stack, frame, predicted, job.work);
     job.scanned = job.scanned || measured.registration.has_value();
     std::vector<Shared<RunLayer>> layers;
     for (RunLayer& layer : measured.layers) {
       layers.push_back(std::make_shared<const RunLayer>(std::move(layer)));
     }
     job.prints.push_back(std::move(layers));
-    progress.advance(++done);
   }
   return job;
 }
@@ -148,23 +150,13 @@ void run(const CalibrateOptions& options, const Console& console) {
   make_folders(options.out);
   const Profile profile = load_profile(options.profile);
   std::vector<MeasuredJob> checks;
-  const auto stacks = static_cast<int>(options.measured.size() + options.check_measured.size());
-  constexpr int kSteps = 14;  // of a calibration with one effect; more only fill the bar
-  Progress progress(console, "calibrating", stacks + kSteps);
-  int done = 0;
-  const MeasuredJob job = read_job(options.job, options.job, options.measured, profile, options.out,
-                                   console, progress, done);
+  const MeasuredJob job =
+      read_job(options.job, options.job, options.measured, profile, options.out, console);
   if (!options.check_job.empty()) {
     checks.push_back(read_job(options.check_job, options.check_job, options.check_measured, profile,
-                              options.out, console, progress, done));
+                              options.out, console));
   }
-  const Calibration calibration =
-      calibrate(job, checks, profile.effects, {}, [&](const std::string& what) {
-        if (!console.quiet && !console.json) fmt::print(stderr, "{}\n", what);
-        done = std::min(done + 1, stacks + kSteps - 1);
-        progress.advance(done);
-      });
-  progress.advance(stacks + kSteps);
+  const Calibration calibration = calibrate(job, checks, profile.effects, {});
 
   std::string written;
   std::vector<TextFile> files;

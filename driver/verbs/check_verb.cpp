@@ -79,20 +79,21 @@ struct Checked {
 
 Checked check_plan(const SlicePlan& plan, const Console& console) {
   const JobHeader& header = plan.header;
+  const Work work = console.work();
   const LayerRange all{0, header.layers()};
   const auto model = std::make_shared<const PrinterModel>(header.profile.effects, header.grid,
                                                           place_of(header.box, header.grid));
   const auto tally = std::make_shared<MaskTally>();
-  const auto layers =
-      score_layers(voxelize(plan.mesh, header.grid, header.box, all),
-                   printed_job(header, plan.mesh, model, tally).all_layers(), header.grid, all);
+  const auto layers = score_layers(voxelize(plan.mesh, header.grid, header.box, all),
+                                   printed_job(header, plan.mesh, model, tally, work).all_layers(),
+                                   header.grid, all);
   Checked checked;
   Scorer scorer(header.grid, 0);
   TrappedPowder powder;
   const auto take = [&](const std::vector<Fault>& faults) {
     for (const Fault& fault : faults) checked.faults[fault.kind].add(fault.region);
   };
-  Progress progress(console, "checking", header.layers());
+  Stage stage(work, "checking", header.layers(), "layers");
   while (layers->rest().size() > 0) {
     for (const Shared<LayerScore>& layer : layers->next(kBlockLayers)) {
       take(scorer.add(*layer));
@@ -101,7 +102,7 @@ Checked check_plan(const SlicePlan& plan, const Console& console) {
       }
       ++checked.totals.layers;
     }
-    progress.advance(checked.totals.layers);
+    stage.reach(checked.totals.layers);
   }
   const JobScore score = scorer.finish();
   take(score.last_faults);

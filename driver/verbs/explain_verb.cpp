@@ -27,14 +27,18 @@ struct ExplainOptions {
 };
 
 // The pixel's layer and those that its print depends on, with their masks in the job.
-std::vector<Shared<InverseLayer>> window_of(const MaskSource& job, int layer, int reach) {
+std::vector<Shared<InverseLayer>> window_of(const MaskSource& job, int layer, int reach,
+                                            const Work& work) {
   const JobHeader& header = *job.header;
   const LayerRange range =
       grown({layer, layer + 1}, LayerReach::both_sides(reach), {0, header.layers()});
-  const auto mesh = reload_parts(header, std::filesystem::path(job.path).parent_path().string());
+  const auto mesh =
+      reload_parts(header, std::filesystem::path(job.path).parent_path().string(), work);
+  Stage stage(work, "reading masks", 2 * reach + 1, "layers");
   const auto targets = voxelize(mesh, header.grid, header.box, range)->next(range.size());
   std::vector<Shared<InverseLayer>> window;
   for (int k = layer - reach; k <= layer + reach; ++k) {
+    stage.advance();
     if (k < range.first || k >= range.last || k < job.first || k >= job.layers().last) {
       window.push_back(nullptr);
       continue;
@@ -61,7 +65,8 @@ void explain(const ExplainOptions& options, const Console& console) {
   }
   const InverseSolver solver(process_window(header.profile.effects, header.grid, job.place()),
                              header.grid, header.profile.mask);
-  const PixelReasons why = solver.reasons(window_of(job, layer, solver.reach()), x, y);
+  const PixelReasons why =
+      solver.reasons(window_of(job, layer, solver.reach(), console.work()), x, y);
   const auto verdict = [&](std::int64_t grows) {
     const std::string what = why.on ? "clearing" : "setting";
     if (grows == 0) return what + " it changes no count of wrong voxels";

@@ -30,7 +30,9 @@ void add_join_verb(CLI::App& program) {
   const auto console = add_console_options(*verb);
   verb->callback([options, console] {
     const int layers = job_layer_count(value_or_throw(JobReader::open(options->shares.front())));
-    value_or_throw(join_jobs(options->shares, options->out, layers, interrupted));
+    Stage stage(console->work(), "joining", layers, "layers");
+    value_or_throw(join_jobs(options->shares, options->out, layers,
+                             [&stage](int layer) { stage.reach(layer); }));
     nlohmann::ordered_json result;
     result["job"] = options->out;
     result["shares"] = options->shares.size();

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "driver/base/console.h"
+#include "driver/base/interrupt.h"
 #include "driver/base/transport_errors.h"
 #include "driver/send/send.h"
 #include "driver/verbs/verbs.h"
@@ -97,11 +98,13 @@ void resume(const Console& console, const Options& options) {
         ErrorKind::kBadInput, options.to,
         fmt::format("job {} does not say which file it came from: name it with --job", options.id));
   }
-  if (options.wait_s > 0 && options.to.starts_with("usb:") &&
-      !wait_for_usb_device(options.to, backend_options(), options.wait_s)) {
-    check_interrupt();
-    throw Error(ErrorKind::kDevice, options.to,
-                fmt::format("no such printer was plugged in within {} s", options.wait_s));
+  if (options.wait_s > 0 && options.to.starts_with("usb:")) {
+    const Stage stage(console.work(), "waiting for the printer");
+    if (!wait_for_usb_device(options.to, backend_options(), options.wait_s)) {
+      check_interrupt();
+      throw Error(ErrorKind::kDevice, options.to,
+                  fmt::format("no such printer was plugged in within {} s", options.wait_s));
+    }
   }
   resume_job(console, options.id, source, options.to);
 }

@@ -31,7 +31,8 @@ struct ScoreOptions {
 };
 
 // The target as the job placed its own parts, read from the files named now.
-std::shared_ptr<const Mesh> load_target(const ScoreOptions& options, const JobHeader& header) {
+std::shared_ptr<const Mesh> load_target(const ScoreOptions& options, const JobHeader& header,
+                                        const Work& work) {
   if (options.targets.size() != header.sources.size()) {
     throw Error(ErrorKind::kUsage, "--target",
                 fmt::format("the job has {} parts; name each of them, in its order",
@@ -40,7 +41,8 @@ std::shared_ptr<const Mesh> load_target(const ScoreOptions& options, const JobHe
   std::vector<Part> parts;
   for (std::size_t i = 0; i < options.targets.size(); ++i) {
     const Source& source = header.sources[i];
-    parts.push_back(load_part(options.targets[i], source.placement.unit_mm, source.placement));
+    parts.push_back(
+        load_part(options.targets[i], source.placement.unit_mm, source.placement, false, work));
     parts.back().source.corner_px = source.corner_px;
   }
   return std::make_shared<const Mesh>(merge_parts(std::move(parts), header.grid));
@@ -76,7 +78,8 @@ void score(const ScoreOptions& options, const Console& console) {
   const Profile profile = options.profile.empty() ? header.profile : load_profile(options.profile);
   const std::vector<PrinterModel> models =
       process_window(profile.effects, header.grid, job.place());
-  const auto target = load_target(options, header);
+  const Work work = console.work();
+  const auto target = load_target(options, header, work);
 
   std::optional<ScoreMap> map;
   if (!options.map.empty()) map.emplace(options.map, job, header.grid);
@@ -90,7 +93,7 @@ void score(const ScoreOptions& options, const Console& console) {
     done += static_cast<int>(layers.size());
     map->add(ended);
   };
-  const ScoreSheet own = score_masks(job, header, target, models, "scoring", console, draw);
+  const ScoreSheet own = score_masks(job, header, target, models, work, draw);
   if (map) map->finish(own.score);
 
   nlohmann::ordered_json json = to_json(own);
@@ -103,9 +106,9 @@ void score(const ScoreOptions& options, const Console& console) {
     for (const Enhancement each : kEnhancements) {
       const std::string enhance = word(each);
       other.enhance = each;
-      const MaskSource masks = enhanced_masks(job, other, target, console);
-      const ScoreSheet sheet =
-          score_masks(masks, header, target, models, "scoring (" + enhance + ")", console);
+      const Stage stage(work, enhance);
+      const MaskSource masks = enhanced_masks(job, other, target, work);
+      const ScoreSheet sheet = score_masks(masks, header, target, models, work);
       json["compare"][enhance] = to_json(sheet);
       text += table_row(enhance, sheet);
     }

@@ -37,7 +37,7 @@ void simulate(const SimulateOptions& options, const Console& console) {
     }
   }
   write_printed(masks, PrinterModel(profile.effects, grid, masks.place()), grid, options.out,
-                console);
+                console.work())();
   console.result(
       {{"out", options.out}, {"layers", masks.size_px[2]}, {"profile", profile.name}},
       fmt::format("{}: {} layers as {} prints them", options.out, masks.size_px[2], profile.name));

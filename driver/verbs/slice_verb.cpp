@@ -27,15 +27,18 @@ void slice(const SliceOptions& options, std::optional<int> threads, const Consol
   const SlicePlan plan = plan_slices(options, console);
   const LayerRange range = layer_range(options.layers, plan.header.layers());
   JobWriter writer = value_or_throw(JobWriter::create(options.out, to_text(plan.header)));
-  Progress progress(console, "slicing", range.size());
-  const auto stream = encoded_layers(plan.header, plan.mesh, plan.color).layers(range);
+  const Work work = console.work();
+  const auto stream = encoded_layers(plan.header, plan.mesh, plan.color, work).layers(range);
   Totals totals;
-  while (stream->rest().size() > 0) {
-    for (const Shared<EncodedLayer>& layer : stream->next(kBlockLayers)) {
-      value_or_throw(writer.append(layer->record));
-      totals.add(*layer);
+  {
+    Stage stage(work, "slicing", range.size(), "layers");
+    while (stream->rest().size() > 0) {
+      for (const Shared<EncodedLayer>& layer : stream->next(kBlockLayers)) {
+        value_or_throw(writer.append(layer->record));
+        totals.add(*layer);
+      }
+      stage.reach(totals.layers);
     }
-    progress.advance(totals.layers);
   }
   value_or_throw(writer.finish());
   totals.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();

@@ -15,11 +15,9 @@
 #include <vector>
 
 #include "driver/base/html.h"
-#include "driver/job/parts.h"
 #include "driver/job/print_stream.h"
 #include "driver/viewer/run_codec.h"
 #include "driver/viewer/viewer_page.h"
-#include "slicer/base/error.h"
 #include "slicer/model/printer_model.h"
 #include "slicer/stack/png.h"
 #include "slicer/voxels/slicing_operator.h"
@@ -74,13 +72,17 @@ int color_step(const MaskSource& job) {
   return step;
 }
 
-std::shared_ptr<const Mesh> target_of(const MaskSource& job, const Console& console) {
-  try {
-    return reload_parts(*job.header, std::filesystem::path(job.path).parent_path().string());
-  } catch (const Error& error) {
-    console.warning(fmt::format("{}; the page goes without the target", error.what()));
-    return nullptr;
-  }
+// What the job's plain masks would print; null where the masks sent are the plain ones.
+std::unique_ptr<Stream<RunLayer>> plain_print(const MaskSource& job,
+                                              const std::shared_ptr<const Mesh>& mesh,
+                                              const PrinterModel& model) {
+  if (mesh == nullptr || job.header->enhance == Enhancement::kNone) return nullptr;
+  JobHeader plain = *job.header;
+  plain.enhance = Enhancement::kNone;
+  // Not owned: the model outlives the stream.
+  return printed_job(plain, mesh, {std::shared_ptr<const void>(), &model},
+                     std::make_shared<MaskTally>())
+      .layers(job.layers());
 }
 
 nlohmann::ordered_json description(const MaskSource& job, bool target, int step) {
@@ -120,7 +122,8 @@ class ChunkWriter {
         mask_(plain_),
         printed_(slice_) {}
 
-  void add(const VoxelLayer* target, RunLayer mask, const RunLayer& printed) {
+  void add(const VoxelLayer* target, RunLayer mask, const RunLayer& printed,
+           const RunLayer* plain_print) {
     if (target != nullptr) {
       for (const RunLayer& slice : target->slices) {
         encode_runs(slice, slice_, text_);
@@ -131,6 +134,7 @@ class ChunkWriter {
       plain_ = std::move(plain);
       encode_runs(mask, plain_, text_);
       encode_runs(printed, slice_, text_);
+      if (plain_print != nullptr) encode_runs(*plain_print, slice_, text_);
     } else {
       encode_runs(mask, mask_, text_);
       encode_runs(printed, printed_, text_);
@@ -146,28 +150,30 @@ class ChunkWriter {
   std::string text_;
 };
 
-std::string data(const MaskSource& job, const Console& console) {
+std::string data(const MaskSource& job, const std::shared_ptr<const Mesh>& mesh, const Work& work) {
   const JobHeader& header = *job.header;
-  const auto mesh = target_of(job, console);
   const PrinterModel model(header.profile.effects, header.grid, job.place());
-  const auto printed = printed_stream(job, model);
+  const auto printed = printed_stream(job, model, work);
   const auto target = mesh ? voxelize(mesh, header.grid, header.box, job.layers()) : nullptr;
+  const auto plain = plain_print(job, mesh, model);
   const int step = color_step(job);
 
   std::string page = fmt::format("<script type=\"application/json\" id=\"job\">{}</script>\n",
                                  inline_json(description(job, mesh != nullptr, step)));
-  Progress progress(console, "writing", job.size_px[2]);
+  Stage stage(work, "drawing layers", job.size_px[2], "layers");
   int done = 0;
   for (int number = 0; printed->rest().size() > 0; ++number) {
     const auto prints = printed->next(kChunkLayers);
     const auto targets = target ? target->next(kChunkLayers) : std::vector<Shared<VoxelLayer>>();
+    const auto plains = plain ? plain->next(kChunkLayers) : std::vector<Shared<RunLayer>>();
     ChunkWriter chunk(job);
     for (std::size_t i = 0; i < prints.size(); ++i, ++done) {
-      chunk.add(target ? targets[i].get() : nullptr, job.read(done), *prints[i]);
+      chunk.add(target ? targets[i].get() : nullptr, job.read(done), *prints[i],
+                plain ? plains[i].get() : nullptr);
       if (step > 0) add_data(fmt::format("color{}", done), color_png(job, done, step), page);
     }
     add_data(fmt::format("chunk{}", number), deflated(chunk.text()), page);
-    progress.advance(done);
+    stage.reach(done);
   }
   return page;
 }
@@ -178,10 +184,11 @@ void fill(std::string& page, const std::string& mark, const std::string& text) {
 
 }  // namespace
 
-std::string viewer_page(const MaskSource& job, const Console& console) {
+std::string viewer_page(const MaskSource& job, const std::shared_ptr<const Mesh>& mesh,
+                        const Work& work) {
   std::string page = kViewerHtml;
   fill(page, "<!--SCRIPT-->", kViewerScript);
-  fill(page, "<!--JOB-->", data(job, console));
+  fill(page, "<!--JOB-->", data(job, mesh, work));
   return page;
 }
 

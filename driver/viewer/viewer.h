@@ -8,23 +8,27 @@
 //                      the plain mask             to the plain mask of the layer below
 //                      the mask                   to the plain mask
 //                      the print                  to the layer's highest slice
+//   and enhanced       the plain mask's print     to the layer's highest slice
 //   without a target   the mask, and the print    to the same of the layer below
 //
 // For the first layer of a chunk the layer below is powder, so a chunk can be read by itself. Color
 // is a PNG for each layer, id="colorN", N from 0.
 #pragma once
 
+#include <memory>
 #include <string>
 
-#include "driver/base/console.h"
 #include "driver/job/mask_source.h"
+#include "slicer/base/work.h"
+#include "slicer/mesh/mesh.h"
 
 namespace binderjet {
 
 constexpr int kChunkLayers = 8;
 
-// The page of a job. The target is made from the job's models; if they are gone the page goes
-// without, and a warning says so.
-std::string viewer_page(const MaskSource& job, const Console& console);
+// The page of a job. `mesh` is its models as one (reload_parts()); null if they are gone, and then
+// the page goes without the target.
+std::string viewer_page(const MaskSource& job, const std::shared_ptr<const Mesh>& mesh,
+                        const Work& work);
 
 }  // namespace binderjet

@@ -7,14 +7,16 @@ const [rx, ry, rz] = job.detail_vx;
 const [nx, ny] = job.size_px;
 const voxels = [nx * rx, ny * ry];
 const kRuler = 26;  // CSS pixels
+const compared = job.target && job.enhance !== 'none';  // plain masks are not what is sent
 const names = [
   ['target', 'Target', 'what we want'],
   ['plain', 'Plain mask', 'the target at the printer\u2019s pixels'],
+  ['plainDifference', 'Plain mask, printed', ''],
   ['mask', 'Mask sent', job.enhance === 'none' ? 'not enhanced' : 'enhanced: ' + job.enhance],
   ['printed', 'Printed', 'what the printer model predicts'],
   ['difference', 'Difference', ''],
   ['color', 'Color', job.color_step > 1 ? 'one pixel in ' + job.color_step : 'as sent'],
-].filter(([id]) => id === 'color' ? job.color_step > 0 :
+].filter(([id]) => id === 'color' ? job.color_step > 0 : id === 'plainDifference' ? compared :
   job.target || !['target', 'plain', 'difference'].includes(id));
 
 // --- unpacking -------------------------------------------------------------------------------
@@ -71,6 +73,7 @@ async function unpack(text) {
       layer.plain = plain = next(plain);
       layer.mask = next(plain);
       layer.printed = next(slice);
+      if (compared) layer.plainPrinted = next(slice);
     } else {
       layer.mask = mask = next(mask);
       layer.printed = printed = next(printed);
@@ -119,15 +122,19 @@ const sources = {
   mask: {scale: [rx, ry], rows: (layer, y, paint) => runs(layer.mask[y], paint, colors.mask, 1)},
   printed: {scale: [1, 1],
             rows: (layer, y, paint) => runs(layer.printed[y], paint, colors.solid, 1)},
-  difference: {scale: [1, 1], rows: (layer, y, paint) => {
-    for (const slice of layer.target) {
-      merged(slice[y], layer.printed[y], (first, last, state) => {
-        const color = [null, colors.missing, colors.extra, colors.same][state];
-        if (color) paint(first, last, color, 1 / rz);
-      });
-    }
-  }},
+  plainDifference: {scale: [1, 1], rows: (layer, y, paint) =>
+    differences(layer, layer.plainPrinted[y], y, paint)},
+  difference: {scale: [1, 1], rows: (layer, y, paint) =>
+    differences(layer, layer.printed[y], y, paint)},
 };
+function differences(layer, printedRow, y, paint) {
+  for (const slice of layer.target) {
+    merged(slice[y], printedRow, (first, last, state) => {
+      const color = [null, colors.missing, colors.extra, colors.same][state];
+      if (color) paint(first, last, color, 1 / rz);
+    });
+  }
+}
 function runs(row, paint, color, weight) {
   for (let i = 0; i < row.length; i += 2) paint(row[i], row[i + 1], color, weight);
 }
@@ -269,13 +276,13 @@ function draw() {
   }
 }
 
-// Voxels of the layer that are missing and extra, and those wanted.
-function tellDifference() {
-  const view = views.find((v) => v.id === 'difference');
+// Voxels of the layer that are missing and extra in a print, by those wanted.
+function tellDifference(id, printed) {
+  const view = views.find((v) => v.id === id);
   if (!view) return;
   let missing = 0, extra = 0, solid = 0;
   for (const slice of shown.target) {
-    slice.forEach((row, y) => merged(row, shown.printed[y], (first, last, state) => {
+    slice.forEach((row, y) => merged(row, printed[y], (first, last, state) => {
       if (state & 1) solid += last - first;
       if (state === 1) missing += last - first;
       if (state === 2) extra += last - first;
@@ -301,7 +308,8 @@ async function show(layer) {
   document.getElementById('number').value = index + job.first;
   history.replaceState(null, '', '#layer=' + (index + job.first));
   draw();
-  tellDifference();
+  tellDifference('plainDifference', shown.plainPrinted);
+  tellDifference('difference', shown.printed);
   document.body.dataset.layer = index + job.first;  // drawn
 }
 function fit() {

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 
+#include "slicer/base/work.h"
 #include "slicer/calibrate/calibrator.h"
 #include "slicer/calibrate/residual/residual_by_axis.h"
 #include "slicer/calibrate/score_prints.h"
@@ -22,9 +23,8 @@ Verdict verdict_of(const std::vector<FoundEffect>& effects, bool far_above) {
 }
 
 Calibration calibrate(const MeasuredJob& job, const std::vector<MeasuredJob>& checks,
-                      const std::vector<EffectSpec>& declared, const CalibrationLimits& limits,
-                      const std::function<void(const std::string&)>& step) {
-  Calibrator calibrator(job, declared, limits, step);
+                      const std::vector<EffectSpec>& declared, const CalibrationLimits& limits) {
+  Calibrator calibrator(job, declared, limits);
   calibrator.run();
 
   Calibration out;
@@ -32,7 +32,7 @@ Calibration calibrate(const MeasuredJob& job, const std::vector<MeasuredJob>& ch
   out.after_model = calibrator.model();
   out.effects = calibrator.effects();
   out.remaining = calibrator.remaining();
-  step("before and after");
+  job.work.note("before and after");
   for (const MeasuredJob& check : checks) {
     const LayerChoice all(check.masks.size(), true);
     out.scores.push_back(score_models(check, check.name, declared, out.after_model, all));
@@ -40,6 +40,7 @@ Calibration calibrate(const MeasuredJob& job, const std::vector<MeasuredJob>& ch
   out.scores.push_back(
       score_models(job, "held-out layers", declared, out.after_model, calibrator.held_out()));
   out.verdict = verdict_of(out.effects, far_above_floor(out.scores.back(), job.scanned));
+  const Stage stage(job.work, "following the residual");
   out.profiles = residual_profiles(job, declared, out.after_model);
   return out;
 }

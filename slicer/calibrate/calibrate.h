@@ -2,8 +2,6 @@
 // Calibration: the residual of a declared model, traced to what it lacks, effect by effect.
 #pragma once
 
-#include <functional>
-
 #include "slicer/calibrate/job/calibration.h"
 #include "slicer/calibrate/job/measured_job.h"
 
@@ -39,10 +37,8 @@ Verdict verdict_of(const std::vector<FoundEffect>& effects, bool far_above);
 // there f is larger. One print alone gives no floor, and then the answer is no.
 bool far_above_floor(const BeforeAfter& score, bool scanned);
 
-// `checks` are prints of the same printer that the fit never sees. `step` is told what is being
-// done, and may throw to end it.
+// `checks` are prints of the same printer that the fit never sees. The work is told to job.work.
 Calibration calibrate(const MeasuredJob& job, const std::vector<MeasuredJob>& checks,
-                      const std::vector<EffectSpec>& declared, const CalibrationLimits& limits,
-                      const std::function<void(const std::string&)>& step);
+                      const std::vector<EffectSpec>& declared, const CalibrationLimits& limits);
 
 }  // namespace binderjet

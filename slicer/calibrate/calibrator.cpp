@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "slicer/base/work.h"
 #include "slicer/calibrate/choice/null_draws.h"
 #include "slicer/calibrate/choice/random_layers.h"
 #include "slicer/model/effects/catalogue.h"
@@ -37,16 +38,17 @@ LayerChoice others(LayerChoice layers) {
 }  // namespace
 
 Calibrator::Calibrator(const MeasuredJob& job, const EffectList& declared,
-                       const CalibrationLimits& limits,
-                       const std::function<void(const std::string&)>& step)
+                       const CalibrationLimits& limits)
     : job_(job),
       limits_(limits),
-      step_(step),
       held_(held_out_layers(job)),
       seen_(others(held_)),
       model_(declared),
       declared_effects_(declared.size()),
-      first_errors_(errors_of(declared)),
+      first_errors_([&] {
+        const Stage stage(job.work, "scoring the declared model");
+        return errors_of(declared);
+      }()),
       errors_(first_errors_) {}
 
 void Calibrator::run() {
@@ -87,7 +89,9 @@ std::vector<std::vector<float>> Calibrator::known_columns(
 }
 
 bool Calibrator::add_one() {
-  step_(fmt::format("looking for effect {}", accepted_.size() + 1));
+  const std::string what = fmt::format("looking for effect {}", accepted_.size() + 1);
+  job_.work.note(what);
+  const Stage stage(job_.work, what);
   std::vector<FittedCandidate> fitted = fit_ranked_candidates();
   for (FittedCandidate& one : fit_ranked_trials()) fitted.push_back(std::move(one));
   return !fitted.empty() && accept_best(std::move(fitted));
@@ -106,8 +110,9 @@ std::vector<Calibrator::FittedCandidate> Calibrator::fit_ranked_candidates() {
   const ScoredCandidate& best = ranked.front();
   const Candidate& winner = candidates[best.place];
   remaining_ = Remaining{winner.covariate, std::max(0.0, best.share)};
-  step_(fmt::format("best is {} of {} ({}): {:.3f} of the residual, p {:.3f}", winner.kind,
-                    word(winner.covariate.axis), word(winner.covariate.form), best.share, best.p));
+  job_.work.note(fmt::format("best is {} of {} ({}): {:.3f} of the residual, p {:.3f}", winner.kind,
+                             word(winner.covariate.axis), word(winner.covariate.form), best.share,
+                             best.p));
   if (!limits_.sure(best.p, best.share) || best.share < limits_.min_share || !best.folds_agree)
     return {};
   untried_equals_.clear();
@@ -133,8 +138,9 @@ std::vector<Calibrator::FittedCandidate> Calibrator::fit_ranked_trials() {
   std::vector<FittedCandidate> out;
   for (ScoredTrial& trial : rank_trials(job_, model_, seen_)) {
     if (out.size() == kMaxTried || trial.share < limits_.min_gain) break;
-    step_(fmt::format("tried {}: {:.3f} of the wrong voxels, p {:.3f}{}", trial.candidate.kind,
-                      trial.share, trial.p, trial.folds_agree ? "" : ", in some places only"));
+    job_.work.note(fmt::format("tried {}: {:.3f} of the wrong voxels, p {:.3f}{}",
+                               trial.candidate.kind, trial.share, trial.p,
+                               trial.folds_agree ? "" : ", in some places only"));
     if (!limits_.sure(trial.p, trial.share) || !trial.folds_agree) continue;
     FittedCandidate one{std::move(trial.candidate), {}, trial.p, trial.share, false, {}};
     one.model = with_places_fitted(job_, std::move(trial.model), one.candidate.effect, seen_);
@@ -146,8 +152,8 @@ std::vector<Calibrator::FittedCandidate> Calibrator::fit_ranked_trials() {
 bool Calibrator::accept_best(std::vector<FittedCandidate> fitted) {
   for (FittedCandidate& one : fitted) {
     one.counts = counts_of(one.model);
-    step_(fmt::format("fitted {}: {:.3f} of the residual, {} voxels wrong", one.candidate.kind,
-                      one.share, sum_of(one.counts)));
+    job_.work.note(fmt::format("fitted {}: {:.3f} of the residual, {} voxels wrong",
+                               one.candidate.kind, one.share, sum_of(one.counts)));
   }
   // A hundredth is no reason to prefer what is less simple or has no name.
   constexpr double kClearly = 0.985;
@@ -160,8 +166,8 @@ bool Calibrator::accept_best(std::vector<FittedCandidate> fitted) {
   EffectList model = with_places_fitted(job_, fitted[best].model, candidate.effect, seen_);
   model = refit_with_accepted(model, candidate.effect, kLastRounds);
   const Errors errors = errors_of(model);
-  step_(fmt::format("{}: printed error {:.5f} to {:.5f} on layers not seen", candidate.kind,
-                    errors_.held, errors.held));
+  job_.work.note(fmt::format("{}: printed error {:.5f} to {:.5f} on layers not seen",
+                             candidate.kind, errors_.held, errors.held));
   const auto enough = [&](double Errors::*of) {
     const double gain = errors_.*of - errors.*of;
     return gain >= limits_.min_gain * errors_.*of &&
@@ -248,7 +254,9 @@ void Calibrator::drop_superseded() {
       const auto own = free_numbers(without, effect);
       numbers.insert(numbers.end(), own.begin(), own.end());
     }
-    step_(fmt::format("trying without {}", accepted_[i].found.kind));
+    const std::string what = fmt::format("trying without {}", accepted_[i].found.kind);
+    job_.work.note(what);
+    const Stage stage(job_.work, what);
     without = refit(job_, std::move(without), numbers, seen_, kLastRounds);
     const Errors errors = errors_of(without);
     const auto missed = [&](double Errors::*of) {
@@ -269,7 +277,8 @@ void Calibrator::drop_superseded() {
 
 // All numbers together, those that were declared too.
 void Calibrator::refit_all() {
-  step_("fitting all numbers");
+  job_.work.note("fitting all numbers");
+  const Stage stage(job_.work, "fitting all numbers");
   std::vector<FreeNumber> numbers;
   for (std::size_t effect = 0; effect < model_.size(); ++effect) {
     const auto own = free_numbers(model_, effect);
@@ -290,7 +299,8 @@ void Calibrator::look_for_random_layers() {
       std::find_if(effect_kinds().begin(), effect_kinds().end(),
                    [](const EffectKind& one) { return one.random_layers != nullptr; });
   if (kind == effect_kinds().end()) return;
-  step_("looking for " + kind->name);
+  job_.work.note("looking for " + kind->name);
+  const Stage stage(job_.work, "looking for " + kind->name);
   const auto points = surface_points(job_, model_, LayerChoice(job_.masks.size(), true),
                                      kChoicePoints, kPairReachMm);
   const auto found = find_random_layers(job_, model_, points, known_columns(points));

@@ -2,7 +2,6 @@
 // The loop: look for what is missing, put it into the model, fit, until nothing more is found.
 #pragma once
 
-#include <functional>
 #include <string>
 #include <vector>
 
@@ -16,9 +15,8 @@ namespace binderjet {
 
 class Calibrator {
  public:
-  // `job` and `step` must outlive it.
-  Calibrator(const MeasuredJob& job, const EffectList& declared, const CalibrationLimits& limits,
-             const std::function<void(const std::string&)>& step);
+  // `job` must outlive it.
+  Calibrator(const MeasuredJob& job, const EffectList& declared, const CalibrationLimits& limits);
 
   void run();
 
@@ -67,7 +65,6 @@ class Calibrator {
 
   const MeasuredJob& job_;
   CalibrationLimits limits_;
-  const std::function<void(const std::string&)>& step_;
   LayerChoice held_;
   LayerChoice seen_;
   EffectList model_;

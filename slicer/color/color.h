@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "slicer/base/work.h"
 #include "slicer/color/field.h"
 #include "slicer/mesh/mesh.h"
 #include "slicer/mesh/paint.h"
@@ -28,6 +29,7 @@ std::shared_ptr<const ColorField> paint_field(Paint paint, const ColorSettings& 
 // paper's reference 3, and its Fig. 12): ambient occlusion within the radius, and how far the
 // surface turns away from its surroundings. Sampled on the mesh, in its coordinates.
 std::shared_ptr<const ColorField> crease_field(std::shared_ptr<const ColorField> base,
-                                               const Mesh& mesh, const ColorSettings& settings);
+                                               const Mesh& mesh, const ColorSettings& settings,
+                                               const Work& work = {});
 
 }  // namespace binderjet

@@ -155,7 +155,8 @@ class CreaseField : public ColorField {
 }  // namespace
 
 std::shared_ptr<const ColorField> crease_field(std::shared_ptr<const ColorField> base,
-                                               const Mesh& mesh, const ColorSettings& settings) {
+                                               const Mesh& mesh, const ColorSettings& settings,
+                                               const Work& work) {
   const double radius_mm = settings.crease_radius_mm;
   const Samples samples = sample(mesh, radius_mm / 8);
 
@@ -170,6 +171,7 @@ std::shared_ptr<const ColorField> crease_field(std::shared_ptr<const ColorField>
 
   const std::vector<Vector> directions = hemisphere();
   std::vector<Rgb> shades(samples.places.size());
+  Stage stage(work, "darkening creases", static_cast<std::int64_t>(shades.size()), "samples");
   const auto shade = [&](const TriangleTree& tree, std::size_t i) {
     const Place& here = samples.places[i];
     const Vector& normal = samples.normals[i];
@@ -205,7 +207,10 @@ std::shared_ptr<const ColorField> crease_field(std::shared_ptr<const ColorField>
         triangles_between(mesh, low_mm - 1.1 * radius_mm, low_mm + band_mm + 1.1 * radius_mm);
     TriangleTree tree(near.cbegin(), near.cend(), TriangleView{&mesh.points, &mesh.triangles});
     tree.build();
-    oneapi::tbb::parallel_for(first, last, [&](std::size_t i) { shade(tree, by_z[i]); });
+    oneapi::tbb::parallel_for(first, last, [&](std::size_t i) {
+      shade(tree, by_z[i]);
+      stage.advance();
+    });
     first = last;
   }
   std::vector<Point> points;

@@ -11,6 +11,7 @@
 
 #include "slicer/base/whole_file.h"
 #include "slicer/coupon/coupon_shapes.h"
+#include "slicer/coupon/united.h"
 
 namespace binderjet {
 namespace {
@@ -35,7 +36,8 @@ Mesh slots() {
     }
     add_turned(mesh, {0, side, 0}, {x, side + kDepth, kBottom}, along_y);
   }
-  return mesh;
+  add_box(mesh, {-kGap, 0, 0}, {0, kDepth, kBottom});  // what holds the two blocks together
+  return united(mesh);
 }
 
 Mesh walls() {
@@ -53,7 +55,8 @@ Mesh walls() {
     }
     add_turned(mesh, {0, side, 0}, {x, side + kLength, kPlate}, along_y);
   }
-  return mesh;
+  add_box(mesh, {-kGap, 0, 0}, {0, kLength, kPlate});  // what holds the two plates together
+  return united(mesh);
 }
 
 // A unit ball of 20 * 4^rounds triangles, cut from an icosahedron.

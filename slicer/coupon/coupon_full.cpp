@@ -9,6 +9,7 @@
 #include <array>
 
 #include "slicer/coupon/coupon_shapes.h"
+#include "slicer/coupon/united.h"
 
 namespace binderjet {
 namespace {
@@ -133,7 +134,7 @@ Mesh full_coupon() {
   add_windows(mesh, 12.9, 18.8);
   add_wedges(mesh);
   add_pins(mesh, 13.5, 24.7);
-  return mesh;
+  return united(mesh);
 }
 
 }  // namespace binderjet

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Boxes, prisms and balls, from which coupons are put together. Shapes may touch or overlap: the
-// winding number (slicer/MODEL.md, Grids) unites them.
+// Boxes, prisms and balls, from which coupons are put together. Shapes may touch or overlap where
+// united() (united.h) makes one surface of them.
 #pragma once
 
 #include <array>

@@ -20,6 +20,7 @@
 #include <utility>
 #include <vector>
 
+#include "slicer/base/work.h"
 #include "slicer/layers/blocks.h"
 #include "slicer/layers/step.h"
 #include "slicer/layers/stream.h"
@@ -41,9 +42,10 @@ class Pipeline {
   // A stream of exactly these layers.
   using Open = std::function<std::unique_ptr<Stream<T>>(LayerRange)>;
 
-  // Begins with what opens the layers of a range of `job`.
-  Pipeline(std::string name, LayerRange job, Open open)
-      : Pipeline(job, std::move(open), {{std::move(name), {}, 0, typeid(void), typeid(T)}}) {}
+  // Begins with what opens the layers of a range of `job`. `work` is asked before each layer of
+  // each step that follows whether to go on.
+  Pipeline(std::string name, LayerRange job, Open open, const Work& work = {})
+      : Pipeline(job, std::move(open), {{std::move(name), {}, 0, typeid(void), typeid(T)}}, work) {}
   // Begins with a stream that is there already and holds all layers of `job`: layers() can be
   // called once.
   Pipeline(std::string name, LayerRange job, std::unique_ptr<Stream<T>> stream)
@@ -58,13 +60,16 @@ class Pipeline {
   template <class Make>
   auto then(std::string name, LayerReach reach, Make make) const {
     using Out = std::invoke_result_t<Make, int, const Window<T>&>;
-    auto open = [before = open_, job = job_, reach,
+    auto open = [before = open_, job = job_, reach, work = work_,
                  make = std::move(make)](LayerRange layers) -> std::unique_ptr<Stream<Out>> {
       return std::make_unique<Step<T, Out>>(before(grown(layers, reach, job)), layers, reach, job,
-                                            make);
+                                            [work, make](int layer, const Window<T>& window) {
+                                              work.check();
+                                              return make(layer, window);
+                                            });
     };
     return Pipeline<Out>(job_, std::move(open),
-                         with({std::move(name), reach, 0, typeid(T), typeid(Out)}));
+                         with({std::move(name), reach, 0, typeid(T), typeid(Out)}), work_);
   }
 
   // Appends a step that changes blocks of layers: make(b, window) is block b, from the blocks
@@ -72,18 +77,21 @@ class Pipeline {
   template <class Make>
   Pipeline then_in_blocks(std::string name, BlockForm form, LayerReach reach, Make make) const {
     assert(job_.first == 0);
-    auto open = [before = open_, job = job_, form, reach,
+    auto open = [before = open_, job = job_, form, reach, work = work_,
                  make = std::move(make)](LayerRange layers) -> std::unique_ptr<Stream<T>> {
       const LayerRange blocks = form.blocks_of(layers);
       const LayerRange all_blocks = form.blocks_of(job);
       auto taken = before(form.layers_of(grown(blocks, reach, all_blocks), job.last));
       auto changed = std::make_unique<Step<Block<T>, Block<T>>>(
           std::make_unique<ToBlocks<T>>(std::move(taken), form, job.last), blocks, reach,
-          all_blocks, make);
+          all_blocks, [work, make](int block, const Window<Block<T>>& window) {
+            work.check();
+            return make(block, window);
+          });
       return std::make_unique<FromBlocks<T>>(std::move(changed), form, layers, job.last);
     };
     return Pipeline(job_, std::move(open),
-                    with({std::move(name), reach, form.size, typeid(T), typeid(T)}));
+                    with({std::move(name), reach, form.size, typeid(T), typeid(T)}), work_);
   }
 
   // The layers of `layers`, which lie in the job, as they are pulled.
@@ -98,8 +106,8 @@ class Pipeline {
   template <class Other>
   friend class Pipeline;
 
-  Pipeline(LayerRange job, Open open, std::vector<StepInfo> steps)
-      : job_(job), open_(std::move(open)), steps_(std::move(steps)) {}
+  Pipeline(LayerRange job, Open open, std::vector<StepInfo> steps, const Work& work)
+      : job_(job), open_(std::move(open)), steps_(std::move(steps)), work_(work) {}
 
   std::vector<StepInfo> with(StepInfo step) const {
     std::vector<StepInfo> steps = steps_;
@@ -110,6 +118,7 @@ class Pipeline {
   LayerRange job_;
   Open open_;
   std::vector<StepInfo> steps_;
+  Work work_;
 };
 
 }  // namespace binderjet

@@ -138,8 +138,8 @@ std::int64_t merge_near_points(Mesh& mesh, double distance) {
 
 class Repairer {
  public:
-  Repairer(Mesh& mesh, const std::string& where, double wall)
-      : mesh_(mesh), where_(where), wall_(wall) {}
+  Repairer(Mesh& mesh, const std::string& where, double wall, const Work& work)
+      : mesh_(mesh), where_(where), wall_(wall), work_(work) {}
 
   Repair repair() {
     note(drop_repeated_corners(mesh_), "dropped", "degenerate face", "degenerate faces");
@@ -153,7 +153,9 @@ class Repairer {
       note(drop_if_closed(), "dropped", "duplicate face", "duplicate faces");
       edges = count_edges(mesh_);
     }
+    work_.check();
     turn_outward();
+    work_.check();
     remark(edges);
     return std::move(result_);
   }
@@ -171,6 +173,7 @@ class Repairer {
   // Keeps what `change` does to the mesh only if less boundary is left; returns its count.
   template <typename Change>
   std::int64_t attempt(const Change& change) {
+    work_.check();
     if (open_ == 0) return 0;
     Mesh changed = mesh_;
     const std::int64_t count = change(changed);
@@ -223,6 +226,7 @@ class Repairer {
   }
 
   void fill() {
+    work_.check();
     Mesh filled = mesh_;
     const ClosedHoles lids = close_holes(filled);
     if (lids.area > kMaxInvented * area_) {
@@ -272,15 +276,36 @@ class Repairer {
   bool has_volume(double whole) const {
     const Shells shells = shells_by_points(mesh_);
     if (shells.count < 2) return false;
-    std::vector<double> volumes(static_cast<std::size_t>(shells.count), 0.0);
-    Mesh one;
-    one.points = mesh_.points;
-    for (std::size_t t = 0; t < mesh_.triangles.size(); ++t) {
-      one.triangles = {mesh_.triangles[t]};
-      volumes[static_cast<std::size_t>(shells.of_triangle[t])] += signed_volume(one);
-    }
+    const std::vector<double> volumes = volumes_of(mesh_, shells);
     return std::any_of(volumes.begin(), volumes.end(),
                        [&](double v) { return std::abs(v) > kMinVolume * whole; });
+  }
+
+  // A cavity hangs together by itself, but it is no piece: all that is within it is outside.
+  int count_pieces() const {
+    const Shells shells = shells_by_points(mesh_);
+    if (shells.count < 2) return shells.count;
+    const auto is_inward = [](double volume) { return volume < 0; };
+    std::vector<double> volumes = volumes_of(mesh_, shells);
+    if (std::any_of(volumes.begin(), volumes.end(), is_inward)) {
+      Mesh outward = mesh_;  // a piece inside out is one all the same
+      turn_shells_outward(outward);
+      volumes = volumes_of(outward, shells);
+    }
+    return shells.count -
+           static_cast<int>(std::count_if(volumes.begin(), volumes.end(), is_inward));
+  }
+
+  // The signed volume of each shell.
+  static std::vector<double> volumes_of(const Mesh& mesh, const Shells& shells) {
+    std::vector<double> volumes(static_cast<std::size_t>(shells.count), 0.0);
+    Mesh one;
+    one.points = mesh.points;
+    for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
+      one.triangles = {mesh.triangles[t]};
+      volumes[static_cast<std::size_t>(shells.of_triangle[t])] += signed_volume(one);
+    }
+    return volumes;
   }
 
   void remark(const EdgeCounts& edges) {
@@ -296,7 +321,7 @@ class Repairer {
                                   "; all that the surface winds around is solid");
       }
     }
-    const int pieces = shells_by_points(mesh_).count;
+    const int pieces = count_pieces();
     if (pieces > 1) {
       result_.remarks.push_back(fmt::format("has {} pieces that do not touch", pieces));
     }
@@ -311,6 +336,7 @@ class Repairer {
   Mesh& mesh_;
   const std::string& where_;
   double wall_;
+  Work work_;
   Repair result_;
   std::size_t open_ = 0;
   double area_ = 0;
@@ -318,8 +344,8 @@ class Repairer {
 
 }  // namespace
 
-Repair repair_mesh(Mesh& mesh, const std::string& where, double wall) {
-  return Repairer(mesh, where, wall).repair();
+Repair repair_mesh(Mesh& mesh, const std::string& where, double wall, const Work& work) {
+  return Repairer(mesh, where, wall, work).repair();
 }
 
 }  // namespace binderjet

@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "slicer/base/work.h"
 #include "slicer/mesh/mesh.h"
 
 namespace binderjet {
@@ -22,6 +23,7 @@ struct Repair {
 // Throws Error (kBadInput, at `where`) for what cannot be printed honestly: no volume, or a
 // surface whose lids would be over half as large as what is there. With `wall` > 0, in the mesh's
 // units, the latter gets a wall of this thickness instead.
-Repair repair_mesh(Mesh& mesh, const std::string& where, double wall = 0);
+// `work` is asked between the steps whether to go on.
+Repair repair_mesh(Mesh& mesh, const std::string& where, double wall = 0, const Work& work = {});
 
 }  // namespace binderjet

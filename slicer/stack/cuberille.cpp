@@ -135,7 +135,7 @@ void CuberilleWriter::add(const RunLayer& mask) {
   s.low = std::move(s.high);
 }
 
-void CuberilleWriter::finish() {
+void CuberilleWriter::complete() {
   State& s = *state_;
   s.flat_faces(s.below, RunLayer(), s.low, true);
   if (s.vertex_count > INT32_MAX) {
@@ -161,7 +161,11 @@ void CuberilleWriter::finish() {
   std::rewind(s.vertices.get());
   s.put(s.vertices.get(), header.data(), header.size());
   if (std::fclose(s.vertices.release()) != 0) fail_to_write(s.out.path());
-  s.out.keep();
+}
+
+void CuberilleWriter::finish() {
+  if (state_->vertices) complete();
+  state_->out.keep();
 }
 
 }  // namespace binderjet

@@ -25,6 +25,9 @@ class CuberilleWriter {
   CuberilleWriter& operator=(const CuberilleWriter&) = delete;
 
   void add(const RunLayer& mask);  // the next layer up
+  // Writes what is left; then only the file's name is missing.
+  void complete();
+  // Gives the file its name, complete() before that if need be.
   void finish();
 
  private:

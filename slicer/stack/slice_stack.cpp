@@ -95,9 +95,14 @@ void StackWriter::write_rgb(int index, std::span<const std::byte> rgb) const {
                                                {info_.pitch_mm[0], info_.pitch_mm[1]}));
 }
 
-void StackWriter::finish() {
+void StackWriter::complete() {
   const std::string text = to_json(info_).dump(1) + "\n";
   write_file("stack.json", std::as_bytes(std::span(text)));
+  complete_ = true;
+}
+
+void StackWriter::finish() {
+  if (!complete_) complete();
   // A folder cannot be replaced in one step, so the earlier stack steps aside first.
   std::error_code error;
   const std::string earlier = part_ + ".earlier";

@@ -53,6 +53,9 @@ class StackWriter {
   std::string image_name(int index) const;
   // 24-bit rows of red, green, blue.
   void write_rgb(int index, std::span<const std::byte> rgb) const;
+  // Writes what is left; then only the folder's name is missing.
+  void complete();
+  // Gives the folder its name, complete() before that if need be.
   void finish();
 
   const StackInfo& info() const { return info_; }
@@ -60,6 +63,7 @@ class StackWriter {
  private:
   std::string folder_;
   std::string part_;  // the temporary name; empty once finished
+  bool complete_ = false;
   StackInfo info_;
 };
 

@@ -48,8 +48,12 @@ void ZipWriter::add(const std::string& name, std::string_view text) {
   add(name, std::as_bytes(std::span(text)));
 }
 
-void ZipWriter::finish() {
+void ZipWriter::complete() {
   state_->demand(zipClose(std::exchange(state_->zip, nullptr), nullptr));
+}
+
+void ZipWriter::finish() {
+  if (state_->zip != nullptr) complete();
   state_->out.keep();
 }
 

@@ -25,6 +25,9 @@ class ZipWriter {
   // `name` is relative, with slashes; less than 4 GB each, any number of them.
   void add(const std::string& name, std::span<const std::byte> bytes);
   void add(const std::string& name, std::string_view text);
+  // Writes what is left; then only the archive's name is missing.
+  void complete();
+  // Gives the archive its name, complete() before that if need be.
   void finish();
 
  private:

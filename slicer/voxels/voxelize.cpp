@@ -216,10 +216,13 @@ std::unique_ptr<Stream<VoxelLayer>> voxelize(std::shared_ptr<const Mesh> mesh, c
 }
 
 Pipeline<VoxelLayer> voxel_layers(std::shared_ptr<const Mesh> mesh, const Grid& grid,
-                                  const JobBox& box) {
-  return {"voxelize", {0, box.size_px[2]}, [mesh = std::move(mesh), grid, box](LayerRange layers) {
+                                  const JobBox& box, const Work& work) {
+  return {"voxelize",
+          {0, box.size_px[2]},
+          [mesh = std::move(mesh), grid, box](LayerRange layers) {
             return voxelize(mesh, grid, box, layers);
-          }};
+          },
+          work};
 }
 
 }  // namespace binderjet

@@ -17,6 +17,7 @@
 #include <memory>
 #include <vector>
 
+#include "slicer/base/work.h"
 #include "slicer/layers/grid.h"
 #include "slicer/layers/pipeline.h"
 #include "slicer/layers/run_layer.h"
@@ -34,6 +35,6 @@ std::unique_ptr<Stream<VoxelLayer>> voxelize(std::shared_ptr<const Mesh> mesh, c
                                              const JobBox& box, LayerRange layers);
 // All layers of the box, as the beginning of a pipeline.
 Pipeline<VoxelLayer> voxel_layers(std::shared_ptr<const Mesh> mesh, const Grid& grid,
-                                  const JobBox& box);
+                                  const JobBox& box, const Work& work = {});
 
 }  // namespace binderjet

@@ -31,7 +31,7 @@ Calibration calibrated(const Printer& printer, std::array<double, 3> size_mm = {
   hidden::print(printer, a, 2);
   MeasuredJob b = hidden::part("b", {6, 7, 1.5}, 1);
   hidden::print(printer, b, 3);
-  return calibrate(a, {b}, hidden::declared(), {}, [](const std::string&) {});
+  return calibrate(a, {b}, hidden::declared(), {});
 }
 
 TEST(Calibrate, ClaimsNothingOfAPrinterThatIsAsDeclared) {
@@ -106,7 +106,7 @@ TEST(Calibrate, NamesTheRivalsThatStraightWallsCannotTellApart) {
   ASSERT_LT(level_against_wicking(block), difference(block.prints[0], block.prints[1]))
       << "the two must be closer than two prints";
 
-  const Calibration found = calibrate(block, {}, hidden::declared(), {}, [](const std::string&) {});
+  const Calibration found = calibrate(block, {}, hidden::declared(), {});
   ASSERT_EQ(found.effects.size(), 1U);
   std::vector<std::string> named = found.effects[0].rivals;
   named.push_back(found.effects[0].kind);
@@ -189,7 +189,7 @@ TEST(Calibrate, LeavesUnexplainedWhatTwoPrintsShareAndNoCovariateTells) {
   hidden::print({}, a, 1);
   hidden::print({}, a, 2);
   for (auto& print : a.prints) strew_pits(print, 1);
-  const Calibration found = calibrate(a, {}, hidden::declared(), {}, [](const std::string&) {});
+  const Calibration found = calibrate(a, {}, hidden::declared(), {});
   EXPECT_TRUE(found.effects.empty()) << found.effects.front().kind;
   EXPECT_EQ(found.verdict, Verdict::kUnexplained);
 }
@@ -213,7 +213,7 @@ Calibration calibrated_without_layer_7(const std::function<int(int)>& step_of) {
   for (std::size_t k = 7; k + 1 < print.size(); ++k) print[k] = print[k + 1];
   print.back() = std::make_shared<const RunLayer>(
       RunLayer::powder(print.back()->width(), print.back()->height()));
-  return calibrate(a, {}, hidden::declared(), {}, [](const std::string&) {});
+  return calibrate(a, {}, hidden::declared(), {});
 }
 
 TEST(Calibrate, FindsALostLayerThatNoRegressionSees) {
@@ -251,7 +251,7 @@ TEST(Calibrate, NamesJitterWhereLayersAreShiftedByChance) {
     };
     MeasuredJob a = hidden::part("a", {7, 7, 2.5}, 0);
     hidden::print(printer, a, 1);
-    const Calibration found = calibrate(a, {}, hidden::declared(), {}, [](const std::string&) {});
+    const Calibration found = calibrate(a, {}, hidden::declared(), {});
     ASSERT_EQ(found.effects.size(), 1U);
     EXPECT_EQ(found.effects[0].kind, "jitter");
     for (const double sigma : found.effects[0].parameters.at("sigma_mm")) {

@@ -13,6 +13,7 @@
 #include "slicer/calibrate/calibrate.h"
 #include "slicer/stack/slice_stack.h"
 #include "tests/hidden_printers/hidden_printer.h"
+#include "tests/support/listener.h"
 #include "tests/support/program.h"
 
 namespace binderjet {
@@ -49,13 +50,15 @@ TEST(Interrupt, IsAskedForWithinASecondOfComputingThroughoutACalibration) {
   std::mutex mutex;
   std::clock_t last = std::clock();
   std::clock_t longest = 0;
-  job.on_check = [&] {
+  Listener listener;
+  job.work = Work(listener);
+  listener.on_check = [&] {
     const std::lock_guard<std::mutex> lock(mutex);
     const std::clock_t now = std::clock();
     longest = std::max(longest, now - last);
     last = now;
   };
-  calibrate(job, {}, hidden::declared(), {}, [](const std::string&) {});
+  calibrate(job, {}, hidden::declared(), {});
   EXPECT_LT(static_cast<double>(longest) / CLOCKS_PER_SEC, 1);
 }
 
@@ -63,11 +66,12 @@ TEST(Interrupt, EndsACalibrationFromWhereverItIsAsked) {
   MeasuredJob job = printed_job();
   for (const int calls : {1, 50, 700, 5000}) {
     std::atomic<int> left = calls;
-    job.on_check = [&] {
+    Listener listener;
+    job.work = Work(listener);
+    listener.on_check = [&] {
       if (--left <= 0) throw Error(ErrorKind::kInterrupted, "", "enough");
     };
-    EXPECT_THROW(calibrate(job, {}, hidden::declared(), {}, [](const std::string&) {}), Error)
-        << calls;
+    EXPECT_THROW(calibrate(job, {}, hidden::declared(), {}), Error) << calls;
   }
 }
 

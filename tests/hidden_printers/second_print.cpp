@@ -111,7 +111,7 @@ Loop close_loop(const Printer& printer, const Wanted& calibrated_on, const Wante
   print(printer, sent, 1);
   print(printer, sent, 2);
   Loop loop;
-  loop.found = calibrate(sent, {}, declared, {}, [](const std::string&) {});
+  loop.found = calibrate(sent, {}, declared, {});
 
   const Scene second = scene_of(wanted);
   for (const std::string enhance : {"none", "paper", "inverse"}) {

@@ -9,6 +9,7 @@
 
 #include "slicer/calibrate/calibrate.h"
 #include "tests/hidden_printers/hidden_printer.h"
+#include "tests/support/listener.h"
 
 namespace {
 
@@ -55,9 +56,12 @@ void run(const Printer& printer, bool small, unsigned seed, Tally& tally) {
     solid += b.prints[0][k]->count();
   }
   const auto start = std::chrono::steady_clock::now();
-  const Calibration found = calibrate(a, {b}, declared(), {}, [](const std::string& what) {
-    if (std::getenv("BINDERJET_TALK") != nullptr) fmt::print("    {}\n", what);
-  });
+  Listener listener;
+  if (std::getenv("BINDERJET_TALK") != nullptr) {
+    listener.on_note = [](const std::string& what) { fmt::print("    {}\n", what); };
+  }
+  a.work = Work(listener);
+  const Calibration found = calibrate(a, {b}, declared(), {});
   const double seconds =
       std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   std::string list;

@@ -115,8 +115,9 @@ Result<void> verify_job(const std::string& path);
 
 // Puts the shares of one job together, byte for byte the job sliced as a whole. All shares are
 // whole and have the same header; each of the layers 0 to layer_count - 1 has a mask in exactly
-// one of them. Ends with a kInterrupted fault once `interrupted`, if given, says so.
+// one of them. `on_layer`, if given, is told each layer before it is written; it may throw to end
+// the work, and then nothing is left.
 Result<void> join_jobs(const std::vector<std::string>& shares, const std::string& out,
-                       int layer_count, const std::function<bool()>& interrupted = {});
+                       int layer_count, const std::function<void(int layer)>& on_layer = {});
 
 }  // namespace binderjet

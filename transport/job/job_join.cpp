@@ -59,7 +59,7 @@ Result<void> check_layers(const std::vector<Piece>& pieces, const std::vector<Jo
 }  // namespace
 
 Result<void> join_jobs(const std::vector<std::string>& shares, const std::string& out,
-                       int layer_count, const std::function<bool()>& interrupted) {
+                       int layer_count, const std::function<void(int layer)>& on_layer) {
   if (shares.empty()) return tl::unexpected(bad_share(out, "no shares to join"));
   std::vector<JobReader> readers;
   std::vector<Piece> pieces;
@@ -86,10 +86,7 @@ Result<void> join_jobs(const std::vector<std::string>& shares, const std::string
   Result<JobWriter> writer = JobWriter::create(out, readers.front().header());
   if (!writer) return tl::unexpected(writer.error());
   for (const Piece& piece : pieces) {
-    if (interrupted && interrupted()) {
-      return tl::unexpected(
-          Failure{FailureKind::kInterrupted, out, "interrupted; nothing was left"});
-    }
+    if (on_layer) on_layer(static_cast<int>(piece.entry.layer));
     const auto record =
         readers[piece.share].read_record(piece.entry.kind, static_cast<int>(piece.entry.layer));
     if (!record) return tl::unexpected(record.error());

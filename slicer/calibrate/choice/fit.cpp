@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "slicer/base/work.h"
 #include "slicer/calibrate/residual/printed_error.h"
 #include "slicer/model/effects/catalogue.h"
 
@@ -117,7 +118,9 @@ EffectList refit(const MeasuredJob& job, EffectList model, const std::vector<Fre
                  const LayerChoice& layers, int rounds) {
   double wrong = wrong_share(job, model, layers);
   constexpr double kEnough = 0.003;  // a smaller relative gain ends the fit
+  Stage stage(job.work, "fitting", rounds, "rounds");
   for (int round = 0; round < rounds; ++round) {
+    stage.reach(round);
     const auto points = surface_points(job, model, layers, kFitPoints, kPairReachMm);
     if (points.size() < 10 * numbers.size() + 100) break;
     auto columns = slopes(job, model, points, numbers);

@@ -5,6 +5,7 @@
 #include <map>
 #include <string>
 
+#include "slicer/base/work.h"
 #include "slicer/calibrate/choice/null_draws.h"
 #include "slicer/calibrate/residual/printed_error.h"
 #include "slicer/model/effects/catalogue.h"
@@ -29,8 +30,10 @@ class Trials {
 
   std::vector<Tried> take() {
     const TrialList list = all_trials(job_.extent(), model_);
+    Stage stage(job_.work, "trying effects", static_cast<std::int64_t>(list.wears.size()),
+                "effects");
     try_orders(list.orders);
-    try_wears(list.wears);
+    try_wears(list.wears, stage);
     return std::move(out_);
   }
   double wrong() const { return static_cast<double>(sum_of(before_)); }
@@ -67,7 +70,7 @@ class Trials {
   }
 
   // A sample of the layers is enough to choose.
-  void try_wears(const std::vector<WearTrial>& wears) {
+  void try_wears(const std::vector<WearTrial>& wears, Stage& stage) {
     LayerChoice some(layers_.size(), false);
     int count = 0;
     for (std::size_t k = 0; k < layers_.size(); ++k) some[k] = layers_[k] && count++ % 3 == 0;
@@ -84,6 +87,7 @@ class Trials {
       std::vector<double> gain = gains(before, wrong_counts(job_, print));
       for (double& cell : gain) cell *= all;
       out_.push_back({wear.effect, wear.covariate, kNowhere, std::move(gain)});
+      stage.advance();
     }
   }
 

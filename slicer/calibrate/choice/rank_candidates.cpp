@@ -8,6 +8,7 @@
 #include <string>
 #include <tuple>
 
+#include "slicer/base/work.h"
 #include "slicer/calibrate/choice/null_draws.h"
 #include "slicer/calibrate/choice/regression.h"
 
@@ -53,9 +54,11 @@ std::vector<ScoredCandidate> rank_candidates(const MeasuredJob& job, const Effec
   if (power <= 0) return {};
 
   std::vector<Score> scores(candidates.size());
+  Stage stage(job.work, "weighing candidates", static_cast<std::int64_t>(candidates.size()),
+              "candidates");
   oneapi::tbb::parallel_for(std::size_t{0}, candidates.size(), [&](std::size_t i) {
+    stage.advance();
     if (covers_all(candidates[i], field)) return;
-    job.check();
     std::vector<std::vector<float>> columns;
     for (const Column& column : candidates[i].columns) {
       columns.push_back(regression::values(column, job, field, points));

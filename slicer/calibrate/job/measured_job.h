@@ -2,10 +2,10 @@
 // A print that was measured: the masks that were sent and what came out.
 #pragma once
 
-#include <functional>
 #include <string>
 #include <vector>
 
+#include "slicer/base/work.h"
 #include "slicer/layers/grid.h"
 #include "slicer/layers/run_layer.h"
 #include "slicer/layers/stream.h"
@@ -23,12 +23,9 @@ struct MeasuredJob {
   std::vector<std::vector<Shared<RunLayer>>> prints;
   // The prints come from a scanner: they may still be a little shifted, turned and blurred.
   bool scanned = false;
-  // Called many times a second during long work, from any of its threads; may throw to end it.
-  std::function<void()> on_check;
+  // Hears how far the work on this job is; asked many times a second whether to go on.
+  Work work;
 
-  void check() const {
-    if (on_check) on_check();
-  }
   int layers() const { return static_cast<int>(masks.size()); }
   JobExtent extent() const { return {grid, place, first_layer, layers()}; }
 };

@@ -112,7 +112,7 @@ std::vector<Shared<RunLayer>> bound_layers(const MeasuredJob& job, const Printer
     const auto first = layers.begin() + std::max(0, index - around);
     const auto last = layers.begin() + std::min(job.layers(), index + around + 1);
     if (std::find(first, last, true) == last) return;
-    job.check();
+    job.work.check();
     const RunWindow window = mask_window(job, index, printer.bind_reach());
     bound[static_cast<std::size_t>(index)] =
         std::make_shared<const RunLayer>(printer.bind(window, job.first_layer + index));
@@ -126,7 +126,7 @@ std::vector<Shared<RunLayer>> worn_layers(const MeasuredJob& job, const PrinterM
   std::vector<Shared<RunLayer>> out(job.masks.size());
   oneapi::tbb::parallel_for(0, job.layers(), [&](int index) {
     if (!layers[static_cast<std::size_t>(index)]) return;
-    job.check();
+    job.work.check();
     out[static_cast<std::size_t>(index)] = std::make_shared<const RunLayer>(
         printer.worn(runs_around(bound, index, printer.wear_reach())));
   });
@@ -166,7 +166,7 @@ std::vector<SurfacePoint> surface_points(const MeasuredJob& job,
     if (layer == nullptr) return;
     LayerPoints& mine = of_layer[static_cast<std::size_t>(index)];
     mine = pair_layer(job, index, *layer, reach_vx, keep_below);
-    job.check();
+    job.work.check();
     const std::size_t replicates = job.prints.size();
     std::vector<DosePlace> places;
     for (std::size_t i = 0; i < mine.offsets.size(); ++i) {
@@ -206,7 +206,7 @@ std::vector<double> margins_at(const MeasuredJob& job, const std::vector<EffectS
     const std::size_t first = begin[static_cast<std::size_t>(index)];
     const std::size_t last = begin[static_cast<std::size_t>(index) + 1];
     if (first == last) return;
-    job.check();
+    job.work.check();
     std::vector<DosePlace> places;
     for (std::size_t i = first; i < last; ++i) {
       DosePlace place = points[i].place();

@@ -184,7 +184,7 @@ RunLayer resampled(const GrayPlane& plane, const Pose& pose, const StackInfo& fr
 }  // namespace
 
 Measured read_measured(const std::string& folder, const StackInfo& frame,
-                       std::span<const RunLayer> predicted, const std::function<void()>& check) {
+                       std::span<const RunLayer> predicted, const Work& work) {
   const StackReader reader(folder);
   if (reader.info().kind == StackKind::kColor) {
     throw Error(ErrorKind::kBadInput, folder, "is a stack of colors; a measured one is needed");
@@ -192,9 +192,10 @@ Measured read_measured(const std::string& folder, const StackInfo& frame,
   Measured measured;
   measured.layers.resize(static_cast<std::size_t>(frame.size[2]));
   const auto for_layers = [&](auto make) {
+    Stage stage(work, "reading scan", frame.size[2], "layers");
     oneapi::tbb::parallel_for(0, frame.size[2], [&](int k) {
-      if (check) check();
       measured.layers[static_cast<std::size_t>(k)] = make(k);
+      stage.advance();
     });
   };
   measured.grays = find_grays(reader);
@@ -203,10 +204,10 @@ Measured read_measured(const std::string& folder, const StackInfo& frame,
     return measured;
   }
   const Scan scan{reader.info(), [&](int image) {
-                    if (check) check();
+                    work.check();
                     return read_plane(reader, measured.grays, image);
                   }};
-  measured.registration = register_scan(scan, predicted, frame, folder);
+  measured.registration = register_scan(scan, predicted, frame, folder, work);
   const Pose& pose = measured.registration->pose;
   // White noise falls by 2 sqrt(pi) deviations of the blur, in samples.
   const double blur_mm = measured.grays.noise / kMaxNoise / (2 * std::sqrt(std::numbers::pi)) *

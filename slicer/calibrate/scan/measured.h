@@ -4,12 +4,12 @@
 //   samples of the scan -> half way between the two grays -> pose -> voxel = gray at its middle
 #pragma once
 
-#include <functional>
 #include <optional>
 #include <span>
 #include <string>
 #include <vector>
 
+#include "slicer/base/work.h"
 #include "slicer/calibrate/scan/registration.h"
 #include "slicer/layers/run_layer.h"
 #include "slicer/stack/slice_stack.h"
@@ -37,10 +37,9 @@ struct Measured {
 // and may be shifted and turned; what it does not cover reads as powder. Grays between the centers
 // of samples are interpolated and the surface is where they pass half, so edges keep their place to
 // a fraction of a sample. Noise beyond a tenth of the contrast is blurred to that first, or it
-// would strew voxels. Error{kBadInput} for a folder that is no such stack. `check`, if it is given,
-// is called before each image is read, from any thread; it may throw to end the work.
+// would strew voxels. Error{kBadInput} for a folder that is no such stack. `work` hears of each
+// image that is read, and then of each layer.
 Measured read_measured(const std::string& folder, const StackInfo& frame,
-                       std::span<const RunLayer> predicted,
-                       const std::function<void()>& check = {});
+                       std::span<const RunLayer> predicted, const Work& work = {});
 
 }  // namespace binderjet

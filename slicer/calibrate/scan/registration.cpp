@@ -6,6 +6,7 @@
 #include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <numbers>
 #include <vector>
 
@@ -282,7 +283,8 @@ double find_shift_z(const Problem& problem, const Parameters& at, double start) 
 }  // namespace
 
 Registration register_scan(const Scan& scan, std::span<const RunLayer> predicted,
-                           const StackInfo& frame, const std::string& where) {
+                           const StackInfo& frame, const std::string& where, const Work& work) {
+  Stage stage(work, "aligning scan", std::ssize(kRounds), "rounds");
   Problem problem{scan, predicted, frame, {}};
   for (std::size_t a = 0; a < 2; ++a) {
     problem.center[a] = frame.origin_mm[a] + 0.5 * frame.size[a] * frame.pitch_mm[a];
@@ -299,6 +301,7 @@ Registration register_scan(const Scan& scan, std::span<const RunLayer> predicted
       for (const double turn : {0.0, -4.0, 4.0, -8.0, 8.0}) {
         Parameters at = Parameters::Zero();
         at.head<3>() << start[0], start[1], turn * kRadian;
+        work.check();
         const Fit fit = gauss_newton(pairs, at, problem.center, round.cutoff);
         if (fit.misfit < best.misfit) best = fit;
       }
@@ -308,6 +311,7 @@ Registration register_scan(const Scan& scan, std::span<const RunLayer> predicted
     if (!same_layers) {
       shift_z = find_shift_z(problem, best.at, shift_z);
     }
+    stage.advance();
   }
   Registration found;
   found.pose = {problem.center, {best.at[0], best.at[1], shift_z}, best.at[2] / kRadian};

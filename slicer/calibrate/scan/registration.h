@@ -14,6 +14,7 @@
 #include <array>
 #include <span>
 
+#include "slicer/base/work.h"
 #include "slicer/calibrate/scan/scan.h"
 #include "slicer/layers/run_layer.h"
 #include "slicer/stack/slice_stack.h"
@@ -31,6 +32,6 @@ struct Registration {
 // shift in z. Finds poses up to about 10 degrees and 3 mm from centroid on centroid.
 // Error{kBadInput} with `where` if prediction or scan is empty.
 Registration register_scan(const Scan& scan, std::span<const RunLayer> predicted,
-                           const StackInfo& frame, const std::string& where);
+                           const StackInfo& frame, const std::string& where, const Work& work = {});
 
 }  // namespace binderjet

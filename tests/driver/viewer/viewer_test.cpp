@@ -52,6 +52,9 @@ using Color = std::array<int, 3>;
 constexpr Color kPowder = {255, 255, 255};
 constexpr Color kMask = {32, 38, 43};
 constexpr Color kSolid = {60, 66, 72};
+constexpr Color kSame = {176, 182, 187};
+constexpr Color kMissing = {196, 48, 42};
+constexpr Color kExtra = {42, 98, 196};
 
 // How many samples [i, j, r, g, b] differ from what `expected(i, j)` says.
 template <class Expected>
@@ -65,23 +68,32 @@ std::size_t wrong_samples(const nlohmann::json& samples, Expected expected) {
 }
 
 TEST_F(Viewer, ShowsTheExportedPixelsInABrowserWithoutANetwork) {
+  slice({"--enhance", "none"});
+  export_to({"-o", here_ / "plain", "--what", "printed"});
   slice({"--enhance", "paper", "--color-enhance"});
   export_to({"--html", here_ / "a.html"});
   export_to({"-o", here_ / "masks"});
   export_to({"-o", here_ / "printed", "--what", "printed"});
+  export_to({"-o", here_ / "target", "--what", "target"});
   constexpr int kLayer = 57;
   const nlohmann::json seen = browse(kLayer);
 
   EXPECT_THAT(seen["faults"], IsEmpty());
   EXPECT_EQ(seen["requests"].size(), 1) << seen["requests"];  // the page itself
-  EXPECT_THAT(seen["views"],
-              ElementsAre("target", "plain", "mask", "printed", "difference", "color"));
+  EXPECT_THAT(seen["views"], ElementsAre("target", "plain", "plainDifference", "mask", "printed",
+                                         "difference", "color"));
   EXPECT_EQ(seen["layers"], nlohmann::json({0, 1, 11, 10, kLayer}));
   EXPECT_GT(seen["zoom"].get<double>(), 7);
   EXPECT_THAT(seen["where"].get<std::string>(), HasSubstr("layer 57"));
 
   const RunLayer mask = StackReader(here_ / "masks").read(kLayer);
   const RunLayer printed = StackReader(here_ / "printed").read(kLayer);
+  const RunLayer plain = StackReader(here_ / "plain").read(kLayer);
+  const RunLayer wanted = StackReader(here_ / "target").read(2 * kLayer);
+  const RunLayer above = StackReader(here_ / "target").read(2 * kLayer + 1);
+  const auto difference = [](bool wanted, bool printed) {
+    return wanted ? (printed ? kSame : kMissing) : (printed ? kExtra : kPowder);
+  };
   for (const char* zoom : {"whole", "near"}) {
     SCOPED_TRACE(zoom);
     const auto& views = seen[zoom];
@@ -90,9 +102,10 @@ TEST_F(Viewer, ShowsTheExportedPixelsInABrowserWithoutANetwork) {
     const auto flat = [&](int i, int j) {
       for (int y = j - 2; y <= j + 2; ++y) {
         for (int x = i - 2; x <= i + 2; ++x) {
-          if (mask.at(x, y) != mask.at(i, j) ||
-              printed.at(2 * x, 2 * y) != printed.at(2 * i, 2 * j))
-            return false;
+          if (mask.at(x, y) != mask.at(i, j)) return false;
+          for (const RunLayer* layer : {&printed, &plain, &wanted}) {
+            if (layer->at(2 * x, 2 * y) != layer->at(2 * i, 2 * j)) return false;
+          }
         }
       }
       return true;
@@ -100,6 +113,10 @@ TEST_F(Viewer, ShowsTheExportedPixelsInABrowserWithoutANetwork) {
     const auto judge = [&](const char* view, auto expected) {
       nlohmann::json samples = nlohmann::json::array();
       for (const auto& sample : views[view]) {
+        // Where only one of the layer's two slices is wanted a difference is of two colors.
+        if (wanted.at(2 * sample[0].get<int>(), 2 * sample[1].get<int>()) !=
+            above.at(2 * sample[0].get<int>(), 2 * sample[1].get<int>()))
+          continue;
         if (!whole || flat(sample[0], sample[1])) samples.push_back(sample);
       }
       EXPECT_GT(samples.size(), 30);
@@ -107,6 +124,12 @@ TEST_F(Viewer, ShowsTheExportedPixelsInABrowserWithoutANetwork) {
       EXPECT_EQ(wrong_samples(samples, expected), 0) << view;
     };
     judge("mask", [&](int i, int j) { return mask.at(i, j) ? kMask : kPowder; });
+    judge("plainDifference", [&](int i, int j) {
+      return difference(wanted.at(2 * i, 2 * j), plain.at(2 * i, 2 * j));
+    });
+    judge("difference", [&](int i, int j) {
+      return difference(wanted.at(2 * i, 2 * j), printed.at(2 * i, 2 * j));
+    });
     judge("printed", [&](int i, int j) { return printed.at(2 * i, 2 * j) ? kSolid : kPowder; });
   }
 }

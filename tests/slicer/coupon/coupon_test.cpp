@@ -8,7 +8,15 @@
 #include <cmath>
 #include <memory>
 
+#include "slicer/coupon/coupon_shapes.h"
+#include "slicer/coupon/united.h"
+#include "slicer/mesh/boundary.h"
+#include "slicer/mesh/crossings.h"
+#include "slicer/mesh/read/read_mesh.h"
+#include "slicer/mesh/repair.h"
+#include "slicer/mesh/shells.h"
 #include "slicer/voxels/voxelize.h"
+#include "tests/support/program.h"
 
 namespace binderjet {
 namespace {
@@ -112,6 +120,33 @@ TEST(Coupon, FullHasAClosedPocketAnOpenOneAndARoof) {
   EXPECT_FALSE(at(9.5, 21.3, 4));
   EXPECT_FALSE(at(8.5, 16, 2)) << "under the widest span";
   EXPECT_TRUE(at(8.5, 16, 3));
+}
+
+// As a reader of the file sees it: points are rounded to floats, and equal ones are merged.
+TEST(Coupon, IsOneCleanSurface) {
+  const Workplace here;
+  for (const CouponKind kind : kCouponKinds) {
+    SCOPED_TRACE(word(kind));
+    write_stl(coupon(kind), here / "a.stl");
+    Mesh mesh = read_mesh(here / "a.stl").mesh;
+    EXPECT_EQ(shells_by_points(mesh).count, 1);
+    EXPECT_EQ(count_crossings(mesh), 0);
+    const Repair repair = repair_mesh(mesh, "a.stl");
+    EXPECT_THAT(repair.notes, testing::IsEmpty());
+    EXPECT_THAT(repair.remarks, testing::IsEmpty());
+  }
+}
+
+TEST(United, IsTheUnionOfItsShapes) {
+  Mesh shapes;
+  add_box(shapes, {0, 0, 0}, {4, 4, 1});
+  add_box(shapes, {1, 1, 1}, {2, 2, 3});      // stands on it: a face in common
+  add_box(shapes, {1.5, 1, 0.5}, {3, 2, 2});  // overlaps both, flush at y = 1 and y = 2
+  const Mesh one = united(shapes);
+  EXPECT_TRUE(is_closed(one));
+  EXPECT_NEAR(signed_volume(one), 16 + 2 + 1, 1e-9);
+  EXPECT_EQ(shells_by_points(one).count, 1);
+  EXPECT_EQ(count_crossings(one), 0);
 }
 
 }  // namespace

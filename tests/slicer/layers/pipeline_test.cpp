@@ -4,10 +4,13 @@
 
 #include <gtest/gtest.h>
 
+#include <atomic>
 #include <memory>
 #include <string>
 #include <vector>
 
+#include "slicer/base/error.h"
+#include "tests/support/listener.h"
 #include "tests/support/random.h"
 
 namespace binderjet {
@@ -150,6 +153,26 @@ TEST(Pipeline, GivesAnyLayersAsTheWholeJobHasThem) {
     ASSERT_EQ(pulled(*chain.layers({first, last}), random.number(1, 9)),
               std::vector<int>(expected.begin() + first, expected.begin() + last));
   }
+}
+
+// Blocks of layers too; and what is asked may end the work.
+TEST(Pipeline, AsksBeforeEachLayerOfEachStepWhetherToGoOn) {
+  Listener listener;
+  std::atomic<int> asked = 0;
+  listener.on_check = [&asked] { ++asked; };
+  const auto all = [](LayerRange range) { return std::make_unique<Squares>(range); };
+  const auto make = [](int, const Window<int>& window) { return sum(window); };
+  const Pipeline<int> steps =
+      Pipeline<int>("squares", {0, 20}, all, Work(listener))
+          .then("one", LayerReach::both_sides(1), make)
+          .then("two", {}, make)
+          .then_in_blocks("four blocks", {5, 0}, {},
+                          [](int, const Window<Block<int>>& window) { return window.middle(); });
+  EXPECT_EQ(pulled(*steps.all_layers(), 8).size(), 20U);
+  EXPECT_EQ(asked, 20 + 20 + 4);
+
+  listener.on_check = [] { throw Error(ErrorKind::kInterrupted, "", "enough"); };
+  EXPECT_THROW(pulled(*steps.all_layers(), 8), Error);
 }
 
 }  // namespace

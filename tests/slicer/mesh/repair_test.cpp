@@ -71,10 +71,16 @@ TEST(Repair, LeavesOverlappingShellsAndCavitiesExactlyAsTheyAre) {
     Mesh copy = mesh;
     const Repair repair = repair_mesh(copy, "x");
     EXPECT_THAT(repair.notes, IsEmpty());
-    EXPECT_THAT(repair.remarks, Contains(HasSubstr("2 pieces")));
     EXPECT_EQ(copy.points, mesh.points);
     EXPECT_EQ(copy.triangles, mesh.triangles);
   }
+}
+
+TEST(Repair, CountsPiecesAndNoCavityAmongThem) {
+  Mesh apart = joined(box(), inside_out(box(1, {5, 0, 0})));
+  EXPECT_THAT(repair_mesh(apart, "x").remarks, Contains(HasSubstr("2 pieces")));
+  Mesh cavity = joined(box(3), inside_out(box(1, {1, 1, 1})));
+  EXPECT_THAT(repair_mesh(cavity, "x").remarks, IsEmpty());
 }
 
 TEST(Repair, RemarksThatASurfaceGoesThroughItself) {

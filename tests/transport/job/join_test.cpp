@@ -3,6 +3,9 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <stdexcept>
+
 #include "tests/transport/sample_job.h"
 #include "transport/job/job_file.h"
 
@@ -24,6 +27,25 @@ TEST(Join, OfSevenSharesIsTheWholeJobByteForByte) {
   const auto joined = join_jobs(shares, folder / "joined.bjob", 40);
   ASSERT_TRUE(joined) << joined.error().what;
   EXPECT_EQ(file_text(folder / "joined.bjob"), file_text(folder / "whole.bjob"));
+}
+
+TEST(Join, TellsEachLayerAndLeavesNothingWhereItIsEnded) {
+  const TempFolder folder;
+  write_sample_job(folder / "low", 0, 20);
+  write_sample_job(folder / "high", 20, 40);
+  std::vector<int> told;
+  const std::vector<std::string> shares = {folder / "high", folder / "low"};
+  ASSERT_TRUE(
+      join_jobs(shares, folder / "joined.bjob", 40, [&told](int layer) { told.push_back(layer); }));
+  told.erase(std::unique(told.begin(), told.end()), told.end());
+  ASSERT_EQ(told.size(), 40U);
+  EXPECT_TRUE(std::is_sorted(told.begin(), told.end()));
+
+  const auto enough = [](int layer) {
+    if (layer == 30) throw std::runtime_error("enough");
+  };
+  EXPECT_THROW((void)join_jobs(shares, folder / "ended.bjob", 40, enough), std::runtime_error);
+  EXPECT_THAT(names_in(folder.path()), Not(testing::Contains(HasSubstr("ended"))));
 }
 
 class RefusedJoin : public testing::Test {

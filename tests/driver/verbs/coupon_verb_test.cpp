@@ -1,0 +1,42 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Coupons are parts that every printer takes without a remark.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "slicer/coupon/coupon.h"
+#include "tests/support/program.h"
+
+namespace binderjet {
+namespace {
+
+using testing::HasSubstr;
+using testing::Not;
+
+std::vector<std::string> profiles(const Workplace& here) {
+  const Ran ran = here.run({"profile", "list", "--json"});
+  EXPECT_EQ(ran.status, 0) << ran.err;
+  std::vector<std::string> names;
+  for (const auto& profile : ran.json()["profiles"]) names.push_back(profile["name"]);
+  return names;
+}
+
+TEST(CouponVerb, MakesPartsThatSliceWithoutAWarningForEveryProfile) {
+  const Workplace here;
+  const std::vector<std::string> printers = profiles(here);
+  EXPECT_GE(printers.size(), 2U);
+  for (const std::string& kind : coupon_kinds()) {
+    const std::string part = here / (kind + ".stl");
+    ASSERT_EQ(here.run({"coupon", "--kind", kind, "-o", part}).status, 0) << kind;
+    for (const std::string& printer : printers) {
+      std::vector<std::string> words = {"slice", part, "-p", printer, "-o", here / "a.bjob"};
+      // The ball is large, and all its layers are alike.
+      if (kind == word(CouponKind::kGolfBall)) words.insert(words.end(), {"--layers", "100:108"});
+      const Ran ran = here.run(words);
+      EXPECT_EQ(ran.status, 0) << ran.err;
+      EXPECT_THAT(ran.err, Not(HasSubstr("warning"))) << kind << " on " << printer;
+    }
+  }
+}
+
+}  // namespace
+}  // namespace binderjet
