@@ -22,7 +22,7 @@
 #include <vector>
 
 #include "transport/base/result.h"
-#include "transport/usb/protocol.h"
+#include "transport/printer/protocol.h"
 #include "transport/usb/usb_session.h"
 
 namespace binderjet {

@@ -12,8 +12,8 @@
 #include <vector>
 
 #include "transport/base/result.h"
-#include "transport/usb/frame.h"
-#include "transport/usb/protocol.h"
+#include "transport/printer/frame.h"
+#include "transport/printer/protocol.h"
 #include "transport/usb/usb_link.h"
 
 namespace binderjet {

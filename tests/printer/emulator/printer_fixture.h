@@ -9,10 +9,10 @@
 #include <string>
 #include <vector>
 
-#include "tests/printer/emulator/printed_volume.h"
-#include "tests/printer/emulator/printer_emulator.h"
+#include "driver/emulator/printed_volume.h"
 #include "tests/printer/emulator/umockdev_bus.h"
 #include "tests/transport/sample_job.h"
+#include "transport/emulator/printer_emulator.h"
 #include "transport/open/open_backend.h"
 
 namespace binderjet {

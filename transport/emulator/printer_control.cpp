@@ -4,7 +4,7 @@
 #include <string_view>
 #include <utility>
 
-#include "tests/printer/emulator/printer_emulator.h"
+#include "transport/emulator/printer_emulator.h"
 
 namespace binderjet {
 namespace {

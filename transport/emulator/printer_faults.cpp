@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <utility>
 
-#include "tests/printer/emulator/printer_emulator.h"
 #include "transport/base/bytes.h"
+#include "transport/emulator/printer_emulator.h"
 
 namespace binderjet {
 

@@ -14,10 +14,10 @@
 #include <string>
 #include <vector>
 
-#include "tests/printer/emulator/fault_plan.h"
-#include "tests/printer/emulator/usb_device.h"
-#include "transport/usb/frame.h"
-#include "transport/usb/protocol.h"
+#include "transport/emulator/emulated_usb_device.h"
+#include "transport/emulator/fault_plan.h"
+#include "transport/printer/frame.h"
+#include "transport/printer/protocol.h"
 
 namespace binderjet {
 
@@ -40,7 +40,7 @@ struct EmulatedJob {
   bool done = false;
 };
 
-class PrinterEmulator : public UsbDevice {
+class PrinterEmulator : public EmulatedUsbDevice {
  public:
   explicit PrinterEmulator(EmulatorOptions options = {});
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The printer's side of binderjet-1: sessions, jobs, layers.
-#include "tests/printer/emulator/printer_emulator.h"
+#include "transport/emulator/printer_emulator.h"
 
 #include <fmt/core.h>
 

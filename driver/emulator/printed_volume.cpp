@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Drops wet a window of pixels and sink one layer; a pixel that got enough binds.
-#include "tests/printer/emulator/printed_volume.h"
+#include "driver/emulator/printed_volume.h"
 
 #include <zstd.h>
 

@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-#include "tests/printer/emulator/printer_emulator.h"
+#include "transport/emulator/printer_emulator.h"
 
 namespace binderjet {
 
