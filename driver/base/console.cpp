@@ -40,6 +40,10 @@ void Console::warning(const std::string& text) const {
   fmt::print(stderr, "binderjet: warning: {}\n", text);
 }
 
+void Console::note(const std::string& text) const {
+  if (!quiet) fmt::print(stderr, "{}\n", text);
+}
+
 std::shared_ptr<Console> add_console_options(CLI::App& verb) {
   auto console = std::make_shared<Console>();
   verb.add_flag("--json", console->json, "print the result as one JSON object on stdout");

@@ -20,6 +20,8 @@ struct Console {
   // Prints the result: `json` itself with --json, otherwise `text` on stdout unless -q.
   void result(const nlohmann::ordered_json& object, const std::string& text) const;
   void warning(const std::string& text) const;
+  // What a person may want to know, on stderr; not with -q.
+  void note(const std::string& text) const;
 };
 
 // Adds --json and -q to a verb. The console lives as long as the verb's callback holds it.

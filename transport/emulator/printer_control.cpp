@@ -146,6 +146,11 @@ void PrinterEmulator::refill() {
   if (session_) say_status();
 }
 
+void PrinterEmulator::mend() {
+  if (gone()) plug();
+  refill();
+}
+
 void PrinterEmulator::heal() {
   refill();
   set_plan({});
