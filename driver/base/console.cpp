@@ -29,6 +29,10 @@ Work Console::work() const {
   return Work(*line_);
 }
 
+void Console::note(const std::string& text) const {
+  if (!quiet) line_->say(text);
+}
+
 std::shared_ptr<Console> add_console_options(CLI::App& verb) {
   auto console = std::make_shared<Console>();
   verb.add_flag("--json", console->json, "print the result as one JSON object on stdout");

@@ -25,6 +25,8 @@ struct Console {
   // Prints the result: `json` itself with --json, otherwise `text` on stdout unless -q.
   void result(const nlohmann::ordered_json& object, const std::string& text) const;
   void warning(const std::string& text) const;
+  // What a person may want to know, on stderr; not with -q.
+  void note(const std::string& text) const;
   // For long work: what it does is seen on a terminal, unless -q; its notes are printed, unless -q
   // or --json; it ends with Error{kInterrupted} after Ctrl-C. Good as long as the console or a copy
   // of it lives.

@@ -17,6 +17,7 @@
 
 #include "driver/base/interrupt.h"
 #include "driver/base/transport_errors.h"
+#include "driver/emulator/folder_printer.h"
 #include "driver/job/encoded_layers.h"
 #include "driver/job/job_masks.h"
 #include "driver/job/layer_queue.h"
@@ -24,6 +25,7 @@
 #include "driver/job/slice_plan.h"
 #include "driver/send/whole_job_file.h"
 #include "slicer/base/error.h"
+#include "transport/emulator/emulator_backend.h"
 #include "transport/open/open_backend.h"
 
 namespace binderjet {
@@ -51,6 +53,14 @@ std::string how_to_resume(Backend& backend, const std::string& id, const std::st
                        job.acknowledged, job.layer_count, id, uri);
   }
   return "";
+}
+
+// How a job ends that this program has also played the printer for: with it.
+std::string lose_job(Backend& backend, const std::string& id, PlayedPrinter& played) {
+  if (id.empty()) return "";
+  static_cast<void>(backend.cancel(id));
+  played.stop();
+  return fmt::format("; this program played the printer, so job {} is lost: print it again", id);
 }
 
 // The layers of a job in order; each is asked for once.
@@ -121,6 +131,13 @@ void send_layers(const Console& console, const std::string& uri, const JobTicket
                  const std::string& resumed, const OpenSource& open) {
   const auto start_time = std::chrono::steady_clock::now();
   std::unique_ptr<Backend> backend = backend_at(uri);
+  const auto played = resumed.empty() ? play_printer(uri) : nullptr;
+  if (played) {
+    console.note(
+        fmt::format("no emulator is running at {}: this program plays the printer for "
+                    "this job",
+                    *emulator_folder(uri)));
+  }
   std::string id = resumed;
   std::uint64_t bytes = 0;
   int first = 0;
@@ -148,8 +165,11 @@ void send_layers(const Console& console, const std::string& uri, const JobTicket
   } catch (const Error& error) {
     backend.reset();  // holds the job
     backend = backend_at(uri);
-    throw Error(error.kind(), "", error.what() + how_to_resume(*backend, id, uri));
+    throw Error(error.kind(), "",
+                error.what() +
+                    (played ? lose_job(*backend, id, *played) : how_to_resume(*backend, id, uri)));
   }
+  const auto emulated_in = emulator_folder(uri);
 
   if (!warning.empty()) console.warning(warning);
   const double seconds =
@@ -161,9 +181,14 @@ void send_layers(const Console& console, const std::string& uri, const JobTicket
   result["first_layer_sent"] = first;
   result["bytes_sent"] = bytes;
   result["seconds"] = seconds;
-  console.result(result,
-                 fmt::format("job {}: layers {} to {} of {} sent to {} in {:.1f} s", id, first,
-                             ticket.layer_count - 1, ticket.layer_count, uri, seconds));
+  std::string text = fmt::format("job {}: layers {} to {} of {} sent to {} in {:.1f} s", id, first,
+                                 ticket.layer_count - 1, ticket.layer_count, uri, seconds);
+  if (emulated_in) {
+    const std::string printed = *emulated_in + "/" + id;
+    result["printed"] = printed;
+    text += ", printed as " + printed;
+  }
+  console.result(result, text);
 }
 
 std::string absolute_path(const std::string& path) {
@@ -216,13 +241,20 @@ std::vector<std::string> usb_models() {
 
 }  // namespace
 
-BackendOptions backend_options() {
-  return {state_folder(), usb_models(), [] { return interrupted(); }};
+BackendOptions backend_options(bool with_state) {
+  BackendOptions options;
+  options.stop_asked = [] { return interrupted(); };
+  if (with_state) {
+    options.state_folder = state_folder();
+    options.usb_models = usb_models();
+  }
+  return options;
 }
 
 std::unique_ptr<Backend> backend_at(const std::string& uri) {
-  const BackendOptions options = uri.starts_with("usb:") ? backend_options() : BackendOptions{};
-  Result<std::unique_ptr<Backend>> backend = open_backend(uri, options);
+  const Scheme* scheme = find_scheme(uri);
+  Result<std::unique_ptr<Backend>> backend =
+      open_backend(uri, backend_options(scheme != nullptr && scheme->needs_state));
   if (!backend) throw Error(ErrorKind::kUsage, backend.error().where, backend.error().what);
   return std::move(*backend);
 }

@@ -12,12 +12,14 @@
 
 namespace binderjet {
 
-// Where jobs for devices keep their journals, which models usb: may mean, and Ctrl-C.
-BackendOptions backend_options();
+// Ctrl-C; and with state where jobs for devices keep their journals, and which models usb: may
+// mean.
+BackendOptions backend_options(bool with_state);
 // Throws Error{kUsage} for a URI that names no backend.
 std::unique_ptr<Backend> backend_at(const std::string& uri);
 
 // All below say the result, and throw Error; one that ends a job that can be resumed says how.
+// Where a new job is for an emulator that is not running, this program plays it for the job.
 void send_job(const Console& console, const std::string& job_path, const std::string& uri);
 // Slices the parts and sends their layers as they come; a slow printer slows down the slicing.
 void send_parts(const Console& console, const SliceOptions& options, const std::string& uri);

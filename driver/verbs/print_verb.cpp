@@ -9,6 +9,7 @@
 #include "driver/send/send.h"
 #include "driver/verbs/verbs.h"
 #include "slicer/base/error.h"
+#include "transport/open/open_backend.h"
 
 namespace binderjet {
 namespace {
@@ -42,8 +43,7 @@ void add_print_verb(CLI::App& program) {
   verb->add_option("JOB_OR_PART", options->slice.parts,
                    "a .bjob file as slice writes it, or models, sliced as they are sent")
       ->required();
-  verb->add_option("--to", options->to, "usb:, usb://VID:PID/SERIAL, spool:DIR or file:PATH")
-      ->required();
+  verb->add_option("--to", options->to, scheme_forms())->required();
   verb->add_flag("--stream", options->stream,
                  "send each layer of a model as soon as it is sliced, as without this word");
   verb->add_option("-p,--profile", options->slice.profile, "a printer profile's name or path");

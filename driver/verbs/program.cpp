@@ -23,6 +23,7 @@ std::unique_ptr<CLI::App> make_program() {
   add_join_verb(*program);
   add_print_verb(*program);
   add_queue_verbs(*program);
+  add_emulator_verb(*program);
   add_profile_verb(*program);
   return program;
 }

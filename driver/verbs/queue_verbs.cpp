@@ -7,6 +7,7 @@
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "driver/base/console.h"
@@ -15,7 +16,7 @@
 #include "driver/send/send.h"
 #include "driver/verbs/verbs.h"
 #include "slicer/base/error.h"
-#include "transport/usb/usb_backend.h"
+#include "transport/open/open_backend.h"
 
 namespace binderjet {
 namespace {
@@ -98,9 +99,10 @@ void resume(const Console& console, const Options& options) {
         ErrorKind::kBadInput, options.to,
         fmt::format("job {} does not say which file it came from: name it with --job", options.id));
   }
-  if (options.wait_s > 0 && options.to.starts_with("usb:")) {
+  const Scheme* scheme = find_scheme(options.to);
+  if (options.wait_s > 0 && scheme != nullptr && scheme->wait != nullptr) {
     const Stage stage(console.work(), "waiting for the printer");
-    if (!wait_for_usb_device(options.to, backend_options(), options.wait_s)) {
+    if (!scheme->wait(options.to, backend_options(scheme->needs_state), options.wait_s)) {
       check_interrupt();
       throw Error(ErrorKind::kDevice, options.to,
                   fmt::format("no such printer was plugged in within {} s", options.wait_s));
@@ -112,7 +114,13 @@ void resume(const Console& console, const Options& options) {
 void devices(const Console& console, const Options& options) {
   std::vector<DeviceStatus> found;
   if (options.to.empty()) {
-    found = value_or_throw(list_usb_devices(backend_options()));
+    for (const Scheme& scheme : schemes()) {
+      if (scheme.list == nullptr) continue;
+      for (DeviceStatus& device :
+           value_or_throw(scheme.list(backend_options(scheme.needs_state)))) {
+        found.push_back(std::move(device));
+      }
+    }
   } else {
     found.push_back(value_or_throw(backend_at(options.to)->device()));
   }
@@ -144,7 +152,7 @@ CLI::App* add_verb(CLI::App& program, const char* name, const char* help, Run ru
 }  // namespace
 
 void add_queue_verbs(CLI::App& program) {
-  const char* to_help = "where: usb:, usb://VID:PID/SERIAL or spool:DIR";
+  const std::string to_help = "where: " + scheme_forms(true);
   auto options = std::make_shared<Options>();
   CLI::App* verb = add_verb(program, "status", "list the jobs, or say how one is", status, options);
   verb->add_option("JOBID", options->id, "the job; without it: all");

@@ -13,6 +13,7 @@ void add_slice_verb(CLI::App& program);
 void add_export_verb(CLI::App& program);
 void add_join_verb(CLI::App& program);
 void add_print_verb(CLI::App& program);
+void add_emulator_verb(CLI::App& program);
 void add_queue_verbs(CLI::App& program);  // status, cancel, resume and devices
 void add_profile_verb(CLI::App& program);
 void add_simulate_verb(CLI::App& program);

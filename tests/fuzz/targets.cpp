@@ -8,11 +8,11 @@
 #include <span>
 #include <string_view>
 
-#include "tests/printer/emulator/printer_emulator.h"
 #include "transport/base/bytes.h"
+#include "transport/emulator/printer_emulator.h"
 #include "transport/job/job_format.h"
-#include "transport/usb/frame.h"
-#include "transport/usb/protocol.h"
+#include "transport/printer/frame.h"
+#include "transport/printer/protocol.h"
 #include "transport/usb/usb_quirks.h"
 
 namespace binderjet {

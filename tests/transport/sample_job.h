@@ -89,6 +89,22 @@ inline void write_sample_job(const std::string& path, int first, int end,
   ASSERT_TRUE(done) << done.error().what;
 }
 
+inline constexpr int kPrintLayers = 40;
+
+// The sample job's records with masks of their header's size, 64 x 64 pixels.
+inline std::vector<std::byte> print_records(int layer) {
+  std::vector<std::byte> mask(8 * 64);
+  std::minstd_rand random(static_cast<unsigned>(layer) + 1);
+  for (std::byte& byte : mask) byte = static_cast<std::byte>(random() >> 8);
+  return encode_record(RecordKind::kMask, layer, mask);
+}
+
+inline std::vector<std::vector<std::byte>> whole_print() {
+  std::vector<std::vector<std::byte>> layers;
+  for (int layer = 0; layer < kPrintLayers; ++layer) layers.push_back(print_records(layer));
+  return layers;
+}
+
 inline std::string file_text(const std::string& path) {
   std::ifstream in(path, std::ios::binary);
   return {std::istreambuf_iterator<char>(in), std::istreambuf_iterator<char>()};

@@ -70,6 +70,7 @@ class Backend {
   virtual Result<std::string> header(const std::string& id) = 0;
 };
 
+// What a backend may be given; open/ says which of it a scheme reads.
 struct BackendOptions {
   std::string state_folder;  // where jobs for devices keep their journals; its parent exists
   std::vector<std::string> usb_models;  // "vid:pid word..." that usb: may mean, with their quirks

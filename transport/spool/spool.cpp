@@ -201,4 +201,14 @@ Result<std::vector<JobStatus>> Spool::jobs() const {
   return all;
 }
 
+std::string Spool::id_at_device(std::uint64_t number) const {
+  for (const char* place : {"incoming", "held"}) {
+    for (const std::string& id : ids(place)) {
+      const auto journal = Journal::peek(fmt::format("{}/{}/{}/journal", folder_, place, id));
+      if (journal && journal->key == number) return id;
+    }
+  }
+  return "";
+}
+
 }  // namespace binderjet

@@ -11,6 +11,7 @@
 // Who sends a job holds its journal's lock. Nothing under incoming/ that is unlocked has a sender.
 #pragma once
 
+#include <cstdint>
 #include <memory>
 #include <string>
 #include <utility>
@@ -55,6 +56,10 @@ class Spool {
   // is known to be rubbish.
   Result<void> remove(const std::string& job_folder) const;
   Result<std::vector<JobStatus>> jobs() const;
+
+  // The unfinished job that went to a device under this number, or "". Also without the lock, for
+  // who knows that the job's sender waits.
+  std::string id_at_device(std::uint64_t number) const;
 
  private:
   void recover() const;

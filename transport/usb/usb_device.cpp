@@ -6,9 +6,10 @@
 
 #include <algorithm>
 #include <array>
-#include <charconv>
 #include <optional>
 #include <utility>
+
+#include "transport/printer/printer_backend.h"
 
 namespace binderjet {
 namespace {
@@ -169,21 +170,14 @@ Result<UsbUri> parse_usb_uri(const std::string& uri) {
                                   fmt::format("{}; use usb: or usb://VID:PID/SERIAL", what)});
   };
   if (!uri.starts_with("usb:")) return bad("not a USB printer");
-  std::string_view rest = std::string_view(uri).substr(4);
+  std::string plain = uri;
+  const auto patience = take_patience(plain);
+  if (!patience) return tl::unexpected(patience.error());
   UsbUri parsed;
-  if (const std::size_t mark = rest.find('?'); mark != std::string_view::npos) {
-    const std::string_view option = rest.substr(mark + 1);
-    constexpr std::string_view kPatience = "patience_s=";
-    double seconds = 0;
-    const char* end = option.data() + option.size();
-    if (!option.starts_with(kPatience) ||
-        std::from_chars(option.data() + kPatience.size(), end, seconds).ptr != end ||
-        !(seconds >= 0.1 && seconds <= 86400)) {
-      return bad("the only option is patience_s=SECONDS, from 0.1 to 86400");
-    }
-    parsed.patience = std::chrono::milliseconds(static_cast<int>(seconds * 1000));
-    rest = rest.substr(0, mark);
-  }
+  parsed.patience = *patience;
+  std::string_view rest = std::string_view(plain).substr(4);
+  if (rest.find('?') != std::string_view::npos)
+    return bad("the only option is ?patience_s=SECONDS");
   if (rest.empty() || rest == "//") return parsed;
   if (!rest.starts_with("//")) return bad("not a USB printer");
   rest.remove_prefix(2);

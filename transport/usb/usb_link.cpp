@@ -128,11 +128,9 @@ void UsbLink::set_state(LinkState state, const std::string& why) {
   changed_.notify_all();
 }
 
-void UsbLink::wait(Clock::time_point until, bool for_sent) {
+void UsbLink::wait(Clock::time_point until) {
   std::unique_lock lock(mutex_);
-  changed_.wait_until(lock, until, [&] {
-    return !input_.empty() || state_ != LinkState::kFine || (for_sent && unsent_ == 0);
-  });
+  changed_.wait_until(lock, until, [&] { return !input_.empty() || state_ != LinkState::kFine; });
 }
 
 void UsbLink::submit_out() {

@@ -5,61 +5,39 @@
 
 #include <libusb.h>
 
-#include <chrono>
 #include <condition_variable>
 #include <cstddef>
 #include <cstdint>
 #include <deque>
 #include <memory>
 #include <mutex>
-#include <span>
 #include <string>
 #include <thread>
 #include <vector>
 
+#include "transport/printer/printer_link.h"
 #include "transport/usb/usb_device.h"
 
 namespace binderjet {
 
-// What became of the stream.
-enum class LinkState {
-  kFine,
-  kBroken,  // bytes may be lost: restart() and begin a new session
-  kGone,    // the device left; nothing helps but opening it again
-};
-
-class UsbLink {
+class UsbLink : public PrinterLink {
  public:
-  using Clock = std::chrono::steady_clock;
-
   UsbLink(UsbContext context, OpenPrinter printer);
   // Cancels and reaps what is in flight.
-  ~UsbLink();
+  ~UsbLink() override;
   UsbLink(const UsbLink&) = delete;
   UsbLink& operator=(const UsbLink&) = delete;
 
-  const OpenPrinter& printer() const { return printer_; }
-
-  // Queues bytes for the OUT pipe; never waits.
-  void post(std::vector<std::byte> bytes);
-  // Bytes posted and not yet taken by the device.
-  std::size_t unsent() const;
-  // Bytes taken so far; grows as long as the device takes any.
-  std::uint64_t sent() const;
-
-  // What came in since the last call.
-  std::vector<std::byte> take_input();
-  LinkState state() const;
-  // In words, where the state is not fine.
-  std::string trouble() const;
-
-  // Waits until there is input, or the state is not fine, or nothing is unsent (if asked), or
-  // `until`.
-  void wait(Clock::time_point until, bool for_sent = false);
-
-  // Forgets everything posted and everything that came, clears both pipes and resets the
-  // printer's: ready for a new session. False if the device is gone or does not answer.
-  bool restart();
+  const std::string& uri() const override { return printer_.uri; }
+  void post(std::vector<std::byte> bytes) override;
+  std::size_t unsent() const override;
+  std::uint64_t sent() const override;
+  std::vector<std::byte> take_input() override;
+  LinkState state() const override;
+  std::string trouble() const override;
+  void wait(Clock::time_point until) override;
+  // Clears both pipes and says SOFT_RESET.
+  bool restart() override;
 
  private:
   struct Piece;

@@ -7,8 +7,8 @@
 
 #include <thread>
 
+#include "driver/emulator/printed_volume.h"
 #include "slicer/stack/slice_stack.h"
-#include "tests/printer/emulator/printed_volume.h"
 #include "tests/printer/emulator/printer_fixture.h"
 #include "tests/printer/emulator/usbip_server.h"
 #include "transport/base/bytes.h"

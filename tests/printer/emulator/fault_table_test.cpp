@@ -75,38 +75,49 @@ const Row kTable[] = {
     {{F::kPortStatus}, nullptr},
 };
 
-class FaultTable : public PrinterTest, public testing::WithParamInterface<Row> {};
-
-TEST_P(FaultTable, EndsInTheWholeJobOrInOneLineAndAResume) {
-  const Row& row = GetParam();
-  printer_.set_plan({row.fault});
-  const auto printed = print();
-  if (row.line == nullptr) {
-    ASSERT_TRUE(printed) << printed.error().where << ": " << printed.error().what;
-  } else {
-    ASSERT_FALSE(printed) << "reported done";
-    EXPECT_EQ(printed.error().kind, FailureKind::kDevice);
-    EXPECT_THAT(printed.error().what, HasSubstr(row.line));
-    EXPECT_THAT(printed.error().where, HasSubstr("usb://1209:0001/EMU0001: layer "));
-    EXPECT_THAT(printed.error().where, HasSubstr(" of 40"));
-    EXPECT_THAT(printed.error().what, testing::Not(HasSubstr("\n")));
-    EXPECT_EQ(job().state, JobState::kHeld);
-    EXPECT_LE(job().acknowledged, printer_.acknowledged());
-    printer_.heal();
-    const auto resumed = resume();
-    ASSERT_TRUE(resumed) << resumed.error().where << ": " << resumed.error().what;
+// A row of the table, at any printer.
+template <class Printer>
+class FaultRow : public Printer, public testing::WithParamInterface<Row> {
+ protected:
+  void run(const Row& row) {
+    this->printer_.set_plan({row.fault});
+    const auto printed = this->print();
+    if (row.line == nullptr) {
+      ASSERT_TRUE(printed) << printed.error().where << ": " << printed.error().what;
+    } else {
+      ASSERT_FALSE(printed) << "reported done";
+      EXPECT_EQ(printed.error().kind, FailureKind::kDevice);
+      EXPECT_THAT(printed.error().what, HasSubstr(row.line));
+      EXPECT_THAT(printed.error().where, HasSubstr(this->printer_uri() + ": layer "));
+      EXPECT_THAT(printed.error().where, HasSubstr(" of 40"));
+      EXPECT_THAT(printed.error().what, testing::Not(HasSubstr("\n")));
+      EXPECT_EQ(this->job().state, JobState::kHeld);
+      EXPECT_LE(this->job().acknowledged, this->printer_.acknowledged());
+      this->printer_.heal();
+      const auto resumed = this->resume();
+      ASSERT_TRUE(resumed) << resumed.error().where << ": " << resumed.error().what;
+    }
+    this->expect_printed_once();
+    EXPECT_EQ(this->job().state, JobState::kDone);
   }
-  expect_printed_once();
-  EXPECT_EQ(job().state, JobState::kDone);
-}
+};
 
-INSTANTIATE_TEST_SUITE_P(Printer, FaultTable, testing::ValuesIn(kTable), [](const auto& row) {
+using FaultTable = FaultRow<PrinterTest>;
+using SocketFaultTable = FaultRow<SocketPrinterTest>;
+
+TEST_P(FaultTable, EndsInTheWholeJobOrInOneLineAndAResume) { run(GetParam()); }
+TEST_P(SocketFaultTable, EndsInTheWholeJobOrInOneLineAndAResume) { run(GetParam()); }
+
+std::string row_name(const testing::TestParamInfo<Row>& row) {
   std::string name = std::to_string(row.index) + "_" + to_text(row.param.fault);
   for (char& c : name) {
     if (std::isalnum(static_cast<unsigned char>(c)) == 0) c = '_';
   }
   return name;
-});
+}
+
+INSTANTIATE_TEST_SUITE_P(Printer, FaultTable, testing::ValuesIn(kTable), row_name);
+INSTANTIATE_TEST_SUITE_P(Printer, SocketFaultTable, testing::ValuesIn(kTable), row_name);
 
 // No printer that keeps PROTOCOL.md does this; it must at least not pass for a printed job.
 TEST_F(PrinterTest, NeverReportsDoneWhatAPrinterForgot) {

@@ -10,10 +10,10 @@
 #include <string>
 #include <thread>
 
-#include "tests/printer/emulator/printed_volume.h"
-#include "tests/printer/emulator/printer_emulator.h"
+#include "driver/emulator/printed_volume.h"
 #include "tests/printer/emulator/usbip_server.h"
 #include "tests/printer/emulator/usbredir_serve.h"
+#include "transport/emulator/printer_emulator.h"
 
 namespace {
 

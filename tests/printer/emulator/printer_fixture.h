@@ -1,44 +1,36 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What the tests of the USB path share: an emulated printer on its bus, and senders of a small job.
+// What the tests of the ways to a printer share: an emulated one at the end of each, and senders of
+// a small job.
 #pragma once
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <atomic>
 #include <numeric>
 #include <string>
+#include <thread>
 #include <vector>
 
-#include "tests/printer/emulator/printed_volume.h"
-#include "tests/printer/emulator/printer_emulator.h"
+#include "driver/emulator/printed_volume.h"
 #include "tests/printer/emulator/umockdev_bus.h"
 #include "tests/transport/sample_job.h"
+#include "transport/emulator/printer_emulator.h"
+#include "transport/emulator/socket_server.h"
 #include "transport/open/open_backend.h"
 
 namespace binderjet {
 
-inline constexpr int kPrintLayers = 40;
-
-// The sample job's records with masks of their header's size, 64 x 64 pixels.
-inline std::vector<std::byte> print_records(int layer) {
-  std::vector<std::byte> mask(8 * 64);
-  std::minstd_rand random(static_cast<unsigned>(layer) + 1);
-  for (std::byte& byte : mask) byte = static_cast<std::byte>(random() >> 8);
-  return encode_record(RecordKind::kMask, layer, mask);
-}
-
-inline std::vector<std::vector<std::byte>> whole_print() {
-  std::vector<std::vector<std::byte>> layers;
-  for (int layer = 0; layer < kPrintLayers; ++layer) layers.push_back(print_records(layer));
-  return layers;
-}
-
-class PrinterTest : public testing::Test {
+class SenderTest : public testing::Test {
  protected:
-  std::unique_ptr<Backend> backend(const std::string& uri = "usb:?patience_s=1") {
+  virtual std::string uri() const = 0;  // to print to, with a second of patience
+  // What a fault names.
+  virtual std::string printer_uri() const = 0;
+
+  std::unique_ptr<Backend> backend() {
     BackendOptions options;
     options.state_folder = folder_ / "state";
-    auto opened = open_backend(uri, options);
+    auto opened = open_backend(uri(), options);
     EXPECT_TRUE(opened) << opened.error().what;
     return std::move(*opened);
   }
@@ -94,8 +86,35 @@ class PrinterTest : public testing::Test {
 
   TempFolder folder_;
   PrinterEmulator printer_;
-  UmockdevBus bus_{printer_};
   std::string id_;
+};
+
+// On a USB bus.
+class PrinterTest : public SenderTest {
+ protected:
+  std::string uri() const override { return "usb:?patience_s=1"; }
+  std::string printer_uri() const override { return "usb://1209:0001/EMU0001"; }
+
+  UmockdevBus bus_{printer_};
+};
+
+// At the socket of a folder.
+class SocketPrinterTest : public SenderTest {
+ protected:
+  SocketPrinterTest()
+      : socket_(*PrinterSocket::listen(folder_ / "printer")),
+        server_([this] { serve_on_socket(printer_, socket_, [this] { return stop_.load(); }); }) {}
+  ~SocketPrinterTest() override {
+    stop_ = true;
+    server_.join();
+  }
+  std::string uri() const override { return printer_uri() + "?patience_s=1"; }
+  std::string printer_uri() const override { return "emulator:" + (folder_ / "printer"); }
+
+ private:
+  PrinterSocket socket_;
+  std::atomic<bool> stop_{false};
+  std::thread server_;
 };
 
 }  // namespace binderjet

@@ -63,9 +63,9 @@ struct Urb {
 }  // namespace
 
 struct UmockdevBus::State {
-  explicit State(UsbDevice& usb) : device(usb) {}
+  explicit State(EmulatedUsbDevice& usb) : device(usb) {}
 
-  UsbDevice& device;
+  EmulatedUsbDevice& device;
   UMockdevTestbed* testbed = nullptr;
   UMockdevIoctlBase* handler = nullptr;
   int fifo = -1;
@@ -299,7 +299,7 @@ struct UmockdevBus::State {
   }
 };
 
-UmockdevBus::UmockdevBus(UsbDevice& device) : state_(std::make_unique<State>(device)) {
+UmockdevBus::UmockdevBus(EmulatedUsbDevice& device) : state_(std::make_unique<State>(device)) {
   state_->testbed = umockdev_testbed_new();
   state_->handler = umockdev_ioctl_base_new();
   g_signal_connect(state_->handler, "handle-ioctl", G_CALLBACK(State::on_ioctl), state_.get());

@@ -7,14 +7,14 @@
 #include <memory>
 #include <string>
 
-#include "tests/printer/emulator/usb_device.h"
+#include "transport/emulator/emulated_usb_device.h"
 
 namespace binderjet {
 
 class UmockdevBus {
  public:
   // The device must outlive the bus. Plugs it in.
-  explicit UmockdevBus(UsbDevice& device);
+  explicit UmockdevBus(EmulatedUsbDevice& device);
   ~UmockdevBus();
   UmockdevBus(const UmockdevBus&) = delete;
   UmockdevBus& operator=(const UmockdevBus&) = delete;

@@ -79,7 +79,7 @@ struct Transfer {
 
 class Connection {
  public:
-  Connection(UsbDevice& device, int fd, const std::atomic<bool>& stop)
+  Connection(EmulatedUsbDevice& device, int fd, const std::atomic<bool>& stop)
       : device_(device), fd_(fd), stop_(stop) {}
 
   void run() {
@@ -228,7 +228,7 @@ class Connection {
     return send_all(fd_, out);
   }
 
-  UsbDevice& device_;
+  EmulatedUsbDevice& device_;
   int fd_;
   const std::atomic<bool>& stop_;
   std::list<Transfer> waiting_;
@@ -236,7 +236,7 @@ class Connection {
 
 }  // namespace
 
-bool serve_usbip(UsbDevice& device, int port, const std::atomic<bool>& stop) {
+bool serve_usbip(EmulatedUsbDevice& device, int port, const std::atomic<bool>& stop) {
   const int listener = socket(AF_INET, SOCK_STREAM | SOCK_CLOEXEC, 0);
   const int yes = 1;
   setsockopt(listener, SOL_SOCKET, SO_REUSEADDR, &yes, sizeof yes);

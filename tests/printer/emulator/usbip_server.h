@@ -4,11 +4,11 @@
 
 #include <atomic>
 
-#include "tests/printer/emulator/usb_device.h"
+#include "transport/emulator/emulated_usb_device.h"
 
 namespace binderjet {
 
 // Serves one host after the other on 127.0.0.1:`port` until `stop`. False if the port is taken.
-bool serve_usbip(UsbDevice& device, int port, const std::atomic<bool>& stop);
+bool serve_usbip(EmulatedUsbDevice& device, int port, const std::atomic<bool>& stop);
 
 }  // namespace binderjet

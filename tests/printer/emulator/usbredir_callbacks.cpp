@@ -16,7 +16,7 @@ UsbredirPort& port(void* self) { return *static_cast<UsbredirPort*>(self); }
 
 }  // namespace
 
-UsbredirPort::UsbredirPort(UsbDevice& device, int socket)
+UsbredirPort::UsbredirPort(EmulatedUsbDevice& device, int socket)
     : device_(device), socket_(socket), parser_(usbredirparser_create()) {
   if (parser_ == nullptr) std::abort();
   set_callbacks();

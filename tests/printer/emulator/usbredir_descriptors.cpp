@@ -46,7 +46,7 @@ void add_endpoint(const std::vector<std::byte>& bytes, std::size_t at, std::uint
 
 }  // namespace
 
-Descriptors read_descriptors(const UsbDevice& device) {
+Descriptors read_descriptors(const EmulatedUsbDevice& device) {
   Descriptors result;
   const std::vector<std::byte> head = device.device_descriptor();
   result.connect.speed = usb_redir_speed_high;
@@ -77,7 +77,7 @@ Descriptors read_descriptors(const UsbDevice& device) {
   return result;
 }
 
-UsbReply get_descriptor(const UsbDevice& device, std::uint16_t kind_and_index) {
+UsbReply get_descriptor(const EmulatedUsbDevice& device, std::uint16_t kind_and_index) {
   const int index = kind_and_index & 0xff;
   std::vector<std::byte> found;
   switch (kind_and_index >> 8) {
@@ -97,7 +97,7 @@ UsbReply get_descriptor(const UsbDevice& device, std::uint16_t kind_and_index) {
   return {UsbOutcome::kOk, std::move(found)};
 }
 
-std::uint8_t configuration_value(const UsbDevice& device) {
+std::uint8_t configuration_value(const EmulatedUsbDevice& device) {
   return byte_at(device.configuration_descriptor(), 5);
 }
 

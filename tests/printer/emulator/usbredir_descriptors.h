@@ -6,7 +6,7 @@
 
 #include <cstdint>
 
-#include "tests/printer/emulator/usb_device.h"
+#include "transport/emulator/emulated_usb_device.h"
 
 namespace binderjet {
 
@@ -17,12 +17,12 @@ struct Descriptors {
 };
 
 // The device is a high-speed one with at most 32 interfaces.
-Descriptors read_descriptors(const UsbDevice& device);
+Descriptors read_descriptors(const EmulatedUsbDevice& device);
 
 // The answer to GET_DESCRIPTOR; kStall for a kind the device does not have.
-UsbReply get_descriptor(const UsbDevice& device, std::uint16_t kind_and_index);
+UsbReply get_descriptor(const EmulatedUsbDevice& device, std::uint16_t kind_and_index);
 
 // The number SET_CONFIGURATION chooses the only configuration by.
-std::uint8_t configuration_value(const UsbDevice& device);
+std::uint8_t configuration_value(const EmulatedUsbDevice& device);
 
 }  // namespace binderjet

@@ -12,7 +12,7 @@
 #include <string>
 #include <vector>
 
-#include "tests/printer/emulator/usb_device.h"
+#include "transport/emulator/emulated_usb_device.h"
 
 namespace binderjet {
 
@@ -25,7 +25,7 @@ namespace binderjet {
 class UsbredirPort {
  public:
   // `device` and `socket` outlive the port.
-  UsbredirPort(UsbDevice& device, int socket);
+  UsbredirPort(EmulatedUsbDevice& device, int socket);
   UsbredirPort(const UsbredirPort&) = delete;
   UsbredirPort& operator=(const UsbredirPort&) = delete;
 
@@ -83,7 +83,7 @@ class UsbredirPort {
               std::vector<std::byte> data);
   void part();
 
-  UsbDevice& device_;
+  EmulatedUsbDevice& device_;
   int socket_;
   std::unique_ptr<usbredirparser, ParserEnd> parser_;
   std::map<std::uint8_t, Endpoint> endpoints_;  // by address; control is 0

@@ -52,7 +52,8 @@ bool stops(int stop_fd, int timeout_ms) {
 
 }  // namespace
 
-UsbredirResult serve_usbredir(UsbDevice& device, const std::string& socket_path, int stop_fd) {
+UsbredirResult serve_usbredir(EmulatedUsbDevice& device, const std::string& socket_path,
+                              int stop_fd) {
   sockaddr_un address{};
   address.sun_family = AF_UNIX;
   if (socket_path.size() >= sizeof(address.sun_path)) {
@@ -76,7 +77,7 @@ UsbredirResult serve_usbredir(UsbDevice& device, const std::string& socket_path,
   }
 }
 
-UsbredirResult serve_usbredir_on(UsbDevice& device, int socket, int stop_fd) {
+UsbredirResult serve_usbredir_on(EmulatedUsbDevice& device, int socket, int stop_fd) {
   const Socket owner(socket);
   if (fcntl(socket, F_SETFL, O_NONBLOCK) != 0) return failed(std::strerror(errno));
   UsbredirPort port(device, socket);

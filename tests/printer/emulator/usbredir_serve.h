@@ -4,7 +4,7 @@
 
 #include <string>
 
-#include "tests/printer/emulator/usb_device.h"
+#include "transport/emulator/emulated_usb_device.h"
 
 namespace binderjet {
 
@@ -24,9 +24,10 @@ struct UsbredirResult {
 //   qemu ... -chardev socket,id=c,path=PATH,server=on,wait=off -device usb-redir,chardev=c
 // and serves `device` until one of the ends above. `stop_fd` is a signalfd or eventfd, or -1.
 // Calls the device from this thread only.
-UsbredirResult serve_usbredir(UsbDevice& device, const std::string& socket_path, int stop_fd);
+UsbredirResult serve_usbredir(EmulatedUsbDevice& device, const std::string& socket_path,
+                              int stop_fd);
 
 // The same on a connected socket, which it closes.
-UsbredirResult serve_usbredir_on(UsbDevice& device, int socket, int stop_fd);
+UsbredirResult serve_usbredir_on(EmulatedUsbDevice& device, int socket, int stop_fd);
 
 }  // namespace binderjet

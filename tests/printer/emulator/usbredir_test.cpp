@@ -32,7 +32,7 @@ std::vector<std::byte> bytes_of(std::initializer_list<int> values) {
 }
 
 // What comes on the OUT pipe leaves on the IN pipe. The plan says what befalls the next calls.
-class EchoDevice : public UsbDevice {
+class EchoDevice : public EmulatedUsbDevice {
  public:
   std::vector<UsbTaken> out_plan;  // bytes: how many to take at most
   std::vector<UsbOutcome> in_plan;

@@ -15,7 +15,7 @@ namespace {
 // The emulated printer (printed_volume.cpp) as its maker would declare it: drops wet 5 x 3 pixels,
 // 7 of the 15 bind. That binder also sinks is not in here.
 constexpr const char* kDeclared = R"(name = "emulated"
-source = "tests/printer/emulator/printed_volume.cpp, without what sinks"
+source = "driver/emulator/printed_volume.cpp, without what sinks"
 [grid]
 dpi = [300, 450]
 layer_mm = [0.102]

@@ -22,21 +22,22 @@
 #include <vector>
 
 #include "transport/base/result.h"
-#include "transport/usb/protocol.h"
-#include "transport/usb/usb_session.h"
+#include "transport/printer/printer_session.h"
+#include "transport/printer/protocol.h"
 
 namespace binderjet {
 
-class UsbJob {
+class PrinterJob {
  public:
   using Clock = std::chrono::steady_clock;
   // Makes an acknowledgement survive anything before the layer is forgotten here.
   using Keep = std::function<Result<void>(int layers, std::uint64_t digest)>;
 
   // `session` has not greeted yet.
-  UsbJob(std::unique_ptr<UsbSession> session, std::chrono::milliseconds patience, Keep keep);
+  PrinterJob(std::unique_ptr<PrinterSession> session, std::chrono::milliseconds patience,
+             Keep keep);
 
-  const OpenPrinter& printer() const { return session_->printer(); }
+  const std::string& printer_uri() const { return session_->printer_uri(); }
 
   // First of all; tells what the printer is and which job it holds.
   Result<protocol::Welcome> greet();
@@ -80,7 +81,7 @@ class UsbJob {
   tl::unexpected<Failure> broken(const std::string& what);
   tl::unexpected<Failure> final(const std::string& what);
 
-  std::unique_ptr<UsbSession> session_;
+  std::unique_ptr<PrinterSession> session_;
   std::chrono::milliseconds patience_;
   Keep keep_;
 

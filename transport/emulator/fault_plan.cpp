@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The words of the faults.
-#include "tests/printer/emulator/fault_plan.h"
+#include "transport/emulator/fault_plan.h"
 
 #include <fmt/core.h>
 

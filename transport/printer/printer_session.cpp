@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Sessions. A new session begins in whatever bytes an old one left in the pipes; its WELCOME is
 // found among them by the session's number. The first frame that is not as it should be ends it.
-#include "transport/usb/usb_session.h"
+#include "transport/printer/printer_session.h"
 
 #include <fmt/core.h>
 #include <sys/random.h>
@@ -24,7 +24,7 @@ constexpr auto kAskTime = std::chrono::seconds(2);
 std::uint64_t random_number() {
   std::uint64_t value = 0;
   if (getrandom(&value, sizeof value, 0) != sizeof value) {
-    value = static_cast<std::uint64_t>(UsbSession::Clock::now().time_since_epoch().count());
+    value = static_cast<std::uint64_t>(PrinterSession::Clock::now().time_since_epoch().count());
   }
   return value;
 }
@@ -35,25 +35,25 @@ double seconds_of(std::chrono::milliseconds time) {
 
 }  // namespace
 
-UsbSession::UsbSession(std::unique_ptr<UsbLink> link, std::chrono::milliseconds patience,
-                       Check check)
+PrinterSession::PrinterSession(std::unique_ptr<PrinterLink> link,
+                               std::chrono::milliseconds patience, Check check)
     : link_(std::move(link)),
       patience_(patience),
       check_(std::move(check)),
       decoder_(kMaxAnswerBytes) {}
 
-tl::unexpected<Failure> UsbSession::broken(const std::string& what) {
+tl::unexpected<Failure> PrinterSession::broken(const std::string& what) {
   healable_ = true;
-  return tl::unexpected(Failure{FailureKind::kDevice, printer().uri, what});
+  return tl::unexpected(Failure{FailureKind::kDevice, printer_uri(), what});
 }
 
-tl::unexpected<Failure> UsbSession::link_failure() {
+tl::unexpected<Failure> PrinterSession::link_failure() {
   if (!gone()) return broken(link_->trouble());
   healable_ = false;
-  return tl::unexpected(Failure{FailureKind::kDevice, printer().uri, link_->trouble()});
+  return tl::unexpected(Failure{FailureKind::kDevice, printer_uri(), link_->trouble()});
 }
 
-Result<protocol::Welcome> UsbSession::greet(Clock::time_point until) {
+Result<protocol::Welcome> PrinterSession::greet(Clock::time_point until) {
   healable_ = false;
   decoder_.reset();
   pending_.clear();
@@ -80,7 +80,7 @@ Result<protocol::Welcome> UsbSession::greet(Clock::time_point until) {
       const auto why = protocol::decode_refused(refused->frame.payload);
       if (why && why->reason == protocol::Refusal::kNoVersion) {
         return tl::unexpected(Failure{
-            FailureKind::kDevice, printer().uri,
+            FailureKind::kDevice, printer_uri(),
             "speaks no version of binderjet-1 that this program knows; update one of them"});
       }
     }
@@ -91,7 +91,7 @@ Result<protocol::Welcome> UsbSession::greet(Clock::time_point until) {
       const auto welcome = protocol::decode_welcome(found->frame.payload);
       if (!welcome || welcome->session != hello.session || found->frame.sequence != 0) continue;
       if (welcome->version != protocol::kVersion) {
-        return tl::unexpected(Failure{FailureKind::kDevice, printer().uri,
+        return tl::unexpected(Failure{FailureKind::kDevice, printer_uri(),
                                       fmt::format("speaks version {} of binderjet-1 where {} was "
                                                   "asked for; update its firmware",
                                                   welcome->version, protocol::kVersion)});
@@ -107,12 +107,12 @@ Result<protocol::Welcome> UsbSession::greet(Clock::time_point until) {
   return broken("the printer does not answer; is it a binderjet-1 printer?");
 }
 
-void UsbSession::post(Type type, std::span<const std::byte> payload,
-                      std::span<const std::byte> more) {
+void PrinterSession::post(Type type, std::span<const std::byte> payload,
+                          std::span<const std::byte> more) {
   link_->post(protocol::encode_frame(type, next_out_++, payload, more));
 }
 
-Result<void> UsbSession::check_patience() {
+Result<void> PrinterSession::check_patience() {
   const auto now = Clock::now();
   if (const std::uint64_t sent = link_->sent(); sent != last_sent_) {
     last_sent_ = sent;
@@ -134,7 +134,7 @@ Result<void> UsbSession::check_patience() {
   return {};
 }
 
-Result<std::optional<Frame>> UsbSession::next(Clock::time_point until) {
+Result<std::optional<Frame>> PrinterSession::next(Clock::time_point until) {
   while (true) {
     while (pending_at_ < pending_.size()) {
       pending_at_ += decoder_.feed(std::span(pending_).subspan(pending_at_));

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Sending, believing acknowledgements, and starting over from the last of them.
-#include "transport/usb/usb_job.h"
+#include "transport/printer/printer_job.h"
 
 #include <fmt/core.h>
 
@@ -38,19 +38,20 @@ std::string joined(const std::vector<std::string>& words) {
 
 }  // namespace
 
-UsbJob::UsbJob(std::unique_ptr<UsbSession> session, std::chrono::milliseconds patience, Keep keep)
+PrinterJob::PrinterJob(std::unique_ptr<PrinterSession> session, std::chrono::milliseconds patience,
+                       Keep keep)
     : session_(std::move(session)), patience_(patience), keep_(std::move(keep)) {}
 
-tl::unexpected<Failure> UsbJob::broken(const std::string& what) {
+tl::unexpected<Failure> PrinterJob::broken(const std::string& what) {
   healable_ = true;
   return final(what);
 }
 
-tl::unexpected<Failure> UsbJob::final(const std::string& what) {
-  return tl::unexpected(Failure{FailureKind::kDevice, printer().uri, what});
+tl::unexpected<Failure> PrinterJob::final(const std::string& what) {
+  return tl::unexpected(Failure{FailureKind::kDevice, printer_uri(), what});
 }
 
-Result<protocol::Welcome> UsbJob::greet() {
+Result<protocol::Welcome> PrinterJob::greet() {
   // A printer that was just switched on may miss the first one.
   const auto time = std::min<Clock::duration>(patience_, kGreetTime) / kGreetings;
   auto welcome = session_->greet(Clock::now() + time);
@@ -65,7 +66,7 @@ Result<protocol::Welcome> UsbJob::greet() {
 }
 
 // Waits for one kind of message; others are taken as they come.
-Result<Frame> UsbJob::answer(Type type, Clock::time_point until) {
+Result<Frame> PrinterJob::answer(Type type, Clock::time_point until) {
   while (true) {
     Result<std::optional<Frame>> next = session_->next(until);
     if (!next) return tl::unexpected(next.error());
@@ -76,7 +77,7 @@ Result<Frame> UsbJob::answer(Type type, Clock::time_point until) {
   }
 }
 
-Result<Progress> UsbJob::open(bool resumed) {
+Result<Progress> PrinterJob::open(bool resumed) {
   if (resumed) {
     session_->post(Type::kResume, protocol::encode(protocol::Resume{
                                       number_, static_cast<std::uint32_t>(layers_),
@@ -96,7 +97,7 @@ Result<Progress> UsbJob::open(bool resumed) {
 }
 
 // RESUME, or JOB where the printer has never heard of the job.
-Result<void> UsbJob::reopen() {
+Result<void> PrinterJob::reopen() {
   healable_ = false;
   open_ = false;
   Result<Progress> ready = open(true);
@@ -120,7 +121,7 @@ Result<void> UsbJob::reopen() {
   return take_progress(*ready);
 }
 
-Result<void> UsbJob::start(std::uint64_t number, int layers, const std::string& header) {
+Result<void> PrinterJob::start(std::uint64_t number, int layers, const std::string& header) {
   number_ = number;
   layers_ = layers;
   header_ = header;
@@ -136,8 +137,8 @@ Result<void> UsbJob::start(std::uint64_t number, int layers, const std::string& 
   return recover(ready.error());
 }
 
-Result<int> UsbJob::resume(std::uint64_t number, int layers, const std::string& header,
-                           int acknowledged, std::uint64_t digest) {
+Result<int> PrinterJob::resume(std::uint64_t number, int layers, const std::string& header,
+                               int acknowledged, std::uint64_t digest) {
   number_ = number;
   layers_ = layers;
   header_ = header;
@@ -150,7 +151,7 @@ Result<int> UsbJob::resume(std::uint64_t number, int layers, const std::string& 
   return acknowledged_;
 }
 
-Result<void> UsbJob::send(int layer, std::span<const std::byte> records) {
+Result<void> PrinterJob::send(int layer, std::span<const std::byte> records) {
   if (records.size() > max_layer_bytes_) {
     return final(fmt::format("takes layers of {} bytes at most, and this one has {}",
                              max_layer_bytes_, records.size()));
@@ -160,7 +161,7 @@ Result<void> UsbJob::send(int layer, std::span<const std::byte> records) {
   return run_until([this, layer] { return posted_ > layer; });
 }
 
-Result<void> UsbJob::end() {
+Result<void> PrinterJob::end() {
   while (true) {
     if (auto done = run_until([this] { return acknowledged_ == layers_; }); !done) return done;
     const int opening = openings_;
@@ -178,7 +179,7 @@ Result<void> UsbJob::end() {
   return {};
 }
 
-void UsbJob::post_layers() {
+void PrinterJob::post_layers() {
   const int last = acknowledged_ + static_cast<int>(window_.size());
   while (posted_ < last && posted_ < limit_) {
     const Sent& sent = window_[static_cast<std::size_t>(posted_ - acknowledged_)];
@@ -190,7 +191,7 @@ void UsbJob::post_layers() {
   }
 }
 
-Result<void> UsbJob::run_until(const Done& done) {
+Result<void> PrinterJob::run_until(const Done& done) {
   while (true) {
     post_layers();
     // What is there already is taken even if nobody has to wait for it: acknowledgements make room.
@@ -215,7 +216,7 @@ Result<void> UsbJob::run_until(const Done& done) {
 }
 
 // Goes on from the last acknowledged layer, if the fault is one that a new session may heal.
-Result<void> UsbJob::recover(Failure fault) {
+Result<void> PrinterJob::recover(Failure fault) {
   bool again = healable_ || session_->worth_retrying();
   while (again && !session_->gone() && fault.kind == FailureKind::kDevice) {
     if (++failures_ > kMaxFailures) break;
@@ -236,7 +237,7 @@ Result<void> UsbJob::recover(Failure fault) {
   return tl::unexpected(std::move(fault));
 }
 
-Result<void> UsbJob::take(const Frame& frame) {
+Result<void> PrinterJob::take(const Frame& frame) {
   switch (frame.type) {
     case Type::kAck:
       if (const auto progress = protocol::decode_progress(frame.payload);
@@ -262,7 +263,7 @@ Result<void> UsbJob::take(const Frame& frame) {
   return broken("the printer's message makes no sense");
 }
 
-Result<void> UsbJob::take_progress(const Progress& progress) {
+Result<void> PrinterJob::take_progress(const Progress& progress) {
   const int there = static_cast<int>(std::min<std::uint32_t>(progress.acknowledged, 0x7fffffff));
   if (there > posted_) return broken("the printer acknowledges a layer it was not sent");
   if (there > acknowledged_) {
@@ -288,7 +289,7 @@ Result<void> UsbJob::take_progress(const Progress& progress) {
   return {};
 }
 
-Result<void> UsbJob::take_status(const protocol::Status& status) {
+Result<void> PrinterJob::take_status(const protocol::Status& status) {
   if (status.state == State::kStopped && !only_paused(status.reasons)) {
     return final("the printer stopped: " + joined(status.reasons));
   }
@@ -303,7 +304,7 @@ Result<void> UsbJob::take_status(const protocol::Status& status) {
   return {};
 }
 
-Result<void> UsbJob::take_refusal(const protocol::Refused& refused) {
+Result<void> PrinterJob::take_refusal(const protocol::Refused& refused) {
   in_the_way_ = refused.job;
   switch (refused.reason) {
     case Refusal::kDamaged:
@@ -317,7 +318,7 @@ Result<void> UsbJob::take_refusal(const protocol::Refused& refused) {
   }
 }
 
-Result<void> UsbJob::cancel(std::uint64_t number, Clock::time_point until) {
+Result<void> PrinterJob::cancel(std::uint64_t number, Clock::time_point until) {
   number_ = number;
   if (const auto welcome = session_->greet(until); !welcome) {
     return tl::unexpected(welcome.error());
@@ -328,7 +329,7 @@ Result<void> UsbJob::cancel(std::uint64_t number, Clock::time_point until) {
   return {};
 }
 
-Result<protocol::Status> UsbJob::status(Clock::time_point until) {
+Result<protocol::Status> PrinterJob::status(Clock::time_point until) {
   session_->post(Type::kAskStatus, {});
   const Result<Frame> frame = answer(Type::kStatus, until);
   if (!frame) return tl::unexpected(frame.error());

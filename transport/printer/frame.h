@@ -16,7 +16,7 @@
 #include <string>
 #include <vector>
 
-#include "transport/usb/protocol.h"
+#include "transport/printer/protocol.h"
 
 namespace binderjet::protocol {
 

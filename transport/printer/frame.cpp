@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Heads are checked before their length is believed, payloads before anybody sees them.
-#include "transport/usb/frame.h"
+#include "transport/printer/frame.h"
 
 #include <fmt/core.h>
 

@@ -11,15 +11,31 @@
 #include <map>
 #include <mutex>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
-#include "tests/printer/emulator/fault_plan.h"
-#include "tests/printer/emulator/usb_device.h"
-#include "transport/usb/frame.h"
-#include "transport/usb/protocol.h"
+#include "transport/emulator/emulated_usb_device.h"
+#include "transport/emulator/fault_plan.h"
+#include "transport/printer/frame.h"
+#include "transport/printer/protocol.h"
 
 namespace binderjet {
+
+struct EmulatedJob;
+
+// Sees the printer work: called from the thread that moves its bytes, with the printer locked, so
+// that it must not call the printer back. What it throws comes out of bulk_out or bulk_in.
+class PrintWatcher {
+ public:
+  virtual ~PrintWatcher() = default;
+  virtual void begins(const EmulatedJob& job) = 0;
+  // Layer job.layers.size() - 1, before its acknowledgement is said.
+  virtual void prints(const EmulatedJob& job, std::span<const std::byte> records) = 0;
+  // The whole job, before the host hears that it is done.
+  virtual void ends(const EmulatedJob& job) = 0;
+  virtual void forgets(const EmulatedJob& job) = 0;  // it was cancelled
+};
 
 struct EmulatorOptions {
   std::string serial = "EMU0001";
@@ -28,6 +44,9 @@ struct EmulatorOptions {
   std::uint64_t max_layer_bytes = std::uint64_t{256} << 20;
   FaultPlan plan;
   std::function<void(std::span<const std::byte>)> on_bytes;  // every byte of the OUT pipe taken
+  PrintWatcher* watcher = nullptr;                           // outlives the printer
+  bool keep_layers =
+      true;  // false: EmulatedJob::layers are empty, for a printer that runs for long
 };
 
 // What a job has become inside the printer; survives everything.
@@ -40,7 +59,7 @@ struct EmulatedJob {
   bool done = false;
 };
 
-class PrinterEmulator : public UsbDevice {
+class PrinterEmulator : public EmulatedUsbDevice {
  public:
   explicit PrinterEmulator(EmulatorOptions options = {});
 
@@ -57,6 +76,7 @@ class PrinterEmulator : public UsbDevice {
   void plug();  // in again, or switched on again
   void unplug();
   void refill();  // powder, binder, the cover closed
+  void mend();    // both; the plan goes on
   void heal();    // all of it, and the rest of the plan is dropped
   void set_plan(FaultPlan plan);
   void add_fault(PlannedFault fault);
@@ -104,6 +124,7 @@ class PrinterEmulator : public UsbDevice {
   void say_ack();
   void print_layers();
   bool may_print(int layer);
+  void store_layer();
   void end_session();
   void lose_power(bool keep_waiting);
   int next_layer() const;  // that would come next on the wire

@@ -19,9 +19,9 @@ struct UsbTaken {
   UsbOutcome outcome = UsbOutcome::kOk;
   std::size_t bytes = 0;
 };  // OUT: bytes taken before the outcome
-class UsbDevice {
+class EmulatedUsbDevice {
  public:
-  virtual ~UsbDevice() = default;
+  virtual ~EmulatedUsbDevice() = default;
   virtual std::vector<std::byte> device_descriptor() const = 0;  // 18 bytes
   virtual std::vector<std::byte> configuration_descriptor()
       const = 0;  // whole, printer class 07/01/02, bulk OUT 0x01, bulk IN 0x82

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The printer's side of binderjet-1: sessions, jobs, layers.
-#include "tests/printer/emulator/printer_emulator.h"
+#include "transport/emulator/printer_emulator.h"
 
 #include <fmt/core.h>
 
@@ -61,6 +61,17 @@ EmulatedJob* PrinterEmulator::find(std::uint64_t number) {
   return found == jobs_.end() ? nullptr : &*found;
 }
 
+// The layer that waits longest is printed; what becomes of it survives everything.
+void PrinterEmulator::store_layer() {
+  EmulatedJob& job = jobs_.back();
+  const std::vector<std::byte> records = std::move(waiting_.front().records);
+  waiting_.pop_front();
+  record_[job.number].push_back(static_cast<int>(job.layers.size()));
+  job.digests.push_back(protocol::next_digest(job.digests.back(), records));
+  job.layers.push_back(options_.keep_layers ? records : std::vector<std::byte>());
+  if (options_.watcher != nullptr) options_.watcher->prints(job, records);
+}
+
 void PrinterEmulator::end_session() {
   session_ = false;
   open_ = false;
@@ -79,13 +90,7 @@ void PrinterEmulator::end_session() {
 
 void PrinterEmulator::lose_power(bool keep_waiting) {
   // Pulling the cable leaves the printer running: it prints what it has.
-  while (keep_waiting && open_ && !waiting_.empty()) {
-    EmulatedJob& job = jobs_.back();
-    record_[job.number].push_back(static_cast<int>(job.layers.size()));
-    job.digests.push_back(protocol::next_digest(job.digests.back(), waiting_.front().records));
-    job.layers.push_back(std::move(waiting_.front().records));
-    waiting_.pop_front();
-  }
+  while (keep_waiting && open_ && !waiting_.empty()) store_layer();
   end_session();
   halted_out_ = false;
   halted_in_ = false;
@@ -188,7 +193,7 @@ void PrinterEmulator::take_hello(const Frame& frame) {
     welcome.held_job = jobs_.back().number;
     welcome.held_layers = static_cast<std::uint32_t>(jobs_.back().layers.size());
   }
-  welcome.name = "binderjet emulated printer";
+  welcome.name = "binderjet emulated printer " + options_.serial;
   say(Type::kWelcome, protocol::encode(welcome));
 }
 
@@ -209,6 +214,7 @@ void PrinterEmulator::take_job(const Frame& frame) {
     fresh.digests = {protocol::first_digest(job->header, job->layers)};
     fresh.header = std::move(job->header);
     jobs_.push_back(std::move(fresh));
+    if (options_.watcher != nullptr) options_.watcher->begins(jobs_.back());
   }
   open_ = true;
   say_progress(Type::kReady);
@@ -257,7 +263,9 @@ void PrinterEmulator::take_end(const Frame& frame) {
   if (totals->digest != job->digests.back()) {
     return refuse(frame, Refusal::kOtherJob, "it ends otherwise");
   }
+  if (options_.watcher != nullptr && !job->done) options_.watcher->ends(*job);
   job->done = true;
+  if (!options_.keep_layers) job->header.clear();
   protocol::Totals done = *totals;
   if (fire_now(PrinterFault::kWrongDone)) done.digest ^= 1;
   if (fire_now(PrinterFault::kLoseDone)) return;
@@ -271,6 +279,8 @@ void PrinterEmulator::take_cancel(const Frame& frame) {
   if (find(*number) == nullptr || find(*number)->done) {
     return refuse(frame, Refusal::kUnknownJob, "never heard of it", *number);
   }
+  if (options_.watcher != nullptr) options_.watcher->forgets(jobs_.back());
+  record_.erase(*number);
   jobs_.pop_back();  // only the last may be unfinished
   open_ = false;
   waiting_.clear();

@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <utility>
 
-#include "tests/printer/emulator/printer_emulator.h"
 #include "transport/base/bytes.h"
+#include "transport/emulator/printer_emulator.h"
 
 namespace binderjet {
 
@@ -168,14 +168,9 @@ void PrinterEmulator::print_layers() {
     say_progress(Type::kAck);
   }
   while (!gone_ && open_ && !waiting_.empty()) {
-    EmulatedJob& job = jobs_.back();
-    const int layer = static_cast<int>(job.layers.size());
-    if (!may_print(layer)) return;
+    if (!may_print(static_cast<int>(jobs_.back().layers.size()))) return;
     layer_began_.reset();
-    job.digests.push_back(protocol::next_digest(job.digests.back(), waiting_.front().records));
-    job.layers.push_back(std::move(waiting_.front().records));
-    waiting_.pop_front();
-    record_[job.number].push_back(layer);
+    store_layer();
     printed_.notify_all();
     say_ack();
   }

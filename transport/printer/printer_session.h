@@ -9,22 +9,24 @@
 #include <memory>
 #include <optional>
 #include <span>
+#include <string>
 #include <vector>
 
 #include "transport/base/result.h"
-#include "transport/usb/frame.h"
-#include "transport/usb/protocol.h"
-#include "transport/usb/usb_link.h"
+#include "transport/printer/frame.h"
+#include "transport/printer/printer_link.h"
+#include "transport/printer/protocol.h"
 
 namespace binderjet {
 
-class UsbSession {
+class PrinterSession {
  public:
   using Clock = std::chrono::steady_clock;
   // Asked every now and then during a wait; a Failure ends it.
   using Check = std::function<Result<void>()>;
 
-  UsbSession(std::unique_ptr<UsbLink> link, std::chrono::milliseconds patience, Check check);
+  PrinterSession(std::unique_ptr<PrinterLink> link, std::chrono::milliseconds patience,
+                 Check check);
 
   // Begins a session, whatever an earlier one left in either side. On a fault see worth_retrying.
   Result<protocol::Welcome> greet(Clock::time_point until);
@@ -32,7 +34,7 @@ class UsbSession {
   bool worth_retrying() const { return healable_; }
   bool gone() const { return link_->state() == LinkState::kGone; }
 
-  const OpenPrinter& printer() const { return link_->printer(); }
+  const std::string& printer_uri() const { return link_->uri(); }
 
   // Sends a message; `more` follows the payload. Never waits.
   void post(protocol::Type type, std::span<const std::byte> payload,
@@ -46,7 +48,7 @@ class UsbSession {
   tl::unexpected<Failure> link_failure();
   Result<void> check_patience();
 
-  std::unique_ptr<UsbLink> link_;
+  std::unique_ptr<PrinterLink> link_;
   std::chrono::milliseconds patience_;
   Check check_;
   protocol::FrameDecoder decoder_;

@@ -4,7 +4,7 @@
 #include <string_view>
 #include <utility>
 
-#include "tests/printer/emulator/printer_emulator.h"
+#include "transport/emulator/printer_emulator.h"
 
 namespace binderjet {
 namespace {
@@ -144,6 +144,11 @@ void PrinterEmulator::refill() {
   const std::lock_guard lock(mutex_);
   stopped_.clear();
   if (session_) say_status();
+}
+
+void PrinterEmulator::mend() {
+  if (gone()) plug();
+  refill();
 }
 
 void PrinterEmulator::heal() {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Encoding and decoding of messages; a decoder checks every length before it looks.
-#include "transport/usb/protocol.h"
+#include "transport/printer/protocol.h"
 
 #include "transport/base/bytes.h"
 

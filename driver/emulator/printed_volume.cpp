@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Drops wet a window of pixels and sink one layer; a pixel that got enough binds.
-#include "tests/printer/emulator/printed_volume.h"
+#include "driver/emulator/printed_volume.h"
 
 #include <zstd.h>
 
 #include <algorithm>
 #include <nlohmann/json.hpp>
-#include <stdexcept>
+#include <utility>
 
-#include "slicer/stack/slice_stack.h"
+#include "slicer/base/error.h"
 #include "transport/job/job_format.h"
 
 namespace binderjet {
@@ -23,9 +23,14 @@ constexpr int kSinkReachX = 1;
 constexpr int kSinks = 2;  // drops, if any fell above
 constexpr int kBinds = 7;  // drops
 
+// A header is a claim: a layer of more than this is none that any printer has.
+constexpr std::int64_t kMaxPixels = std::int64_t{1} << 28;
+
 using Bits = std::vector<std::uint8_t>;  // one byte a pixel, with a dry margin around
 
-struct Plane {
+}  // namespace
+
+struct PowderBed::Plane {
   int width, height;
   Bits bits;
   Plane(int w, int h)
@@ -44,32 +49,66 @@ struct Plane {
   }
 };
 
-// The mask among a layer's records.
-Plane unpack_mask(const std::vector<std::byte>& records, int width, int height) {
+PowderBed::PowderBed(const std::string& header, int layer_count) {
+  const auto wrong = [] {
+    return Error(ErrorKind::kBadInput, "",
+                 "the job's header does not say how large its layers are; slice it again");
+  };
+  info_.kind = StackKind::kMeasured;
+  info_.files = "measured_%06d.png";
+  try {
+    const auto fields = nlohmann::json::parse(header);
+    fields.at("size_px").get_to(info_.size);
+    info_.pitch_mm = fields.value("pitch_mm", std::array<double, 3>{0.1, 0.1, 0.1});
+    info_.origin_mm = fields.value("origin_mm", std::array<double, 3>{0, 0, 0});
+  } catch (const nlohmann::json::exception&) {
+    throw wrong();
+  }
+  info_.size[2] = layer_count;
+  const auto is_pitch = [](double mm) { return mm > 1e-6 && mm < 1e6; };
+  if (!std::all_of(info_.pitch_mm.begin(), info_.pitch_mm.end(), is_pitch) || info_.size[0] < 1 ||
+      info_.size[1] < 1 || std::int64_t{info_.size[0]} * info_.size[1] > kMaxPixels) {
+    throw wrong();
+  }
+}
+
+PowderBed::~PowderBed() = default;
+
+std::optional<std::vector<std::byte>> PowderBed::take(std::span<const std::byte> records) {
+  const int width = info_.size[0];
+  const int height = info_.size[1];
   const std::size_t row_bytes = (static_cast<std::size_t>(width) + 7) / 8;
   const std::size_t size = row_bytes * static_cast<std::size_t>(height);
-  std::span<const std::byte> rest = records;
-  while (const auto head = job_format::decode_record_head(rest)) {
-    if (rest.size() - job_format::kRecordHeadBytes < head->frame_bytes) break;
-    const auto frame = rest.subspan(job_format::kRecordHeadBytes, head->frame_bytes);
-    rest = rest.subspan(job_format::kRecordHeadBytes + head->frame_bytes);
+  while (const auto head = job_format::decode_record_head(records)) {
+    if (records.size() - job_format::kRecordHeadBytes < head->frame_bytes) break;
+    const auto frame = records.subspan(job_format::kRecordHeadBytes, head->frame_bytes);
+    records = records.subspan(job_format::kRecordHeadBytes + head->frame_bytes);
     if (head->kind != RecordKind::kMask) continue;
     if (head->payload_bytes != size) break;
     std::vector<unsigned char> packed(size);
     if (ZSTD_decompress(packed.data(), size, frame.data(), frame.size()) != size) break;
-    Plane plane(width, height);
+    auto plane = std::make_unique<Plane>(width, height);
     for (int y = 0; y < height; ++y) {
       const unsigned char* row = packed.data() + row_bytes * static_cast<std::size_t>(y);
       for (int x = 0; x < width; ++x) {
-        plane.bits[plane.at(x, y)] = static_cast<std::uint8_t>(row[x / 8] >> (7 - x % 8) & 1);
+        plane->bits[plane->at(x, y)] = static_cast<std::uint8_t>(row[x / 8] >> (7 - x % 8) & 1);
       }
     }
-    return plane;
+    std::optional<std::vector<std::byte>> below;
+    if (newest_) below = bind(*newest_, plane.get());
+    newest_ = std::move(plane);
+    return below;
   }
-  throw std::runtime_error("a layer without a mask of the header's size");
+  throw Error(ErrorKind::kBadInput, "",
+              "a layer has no mask of the size that the job's header names; slice it again");
 }
 
-std::vector<std::byte> bind(const Plane& mask, const Plane* above) {
+std::optional<std::vector<std::byte>> PowderBed::top() const {
+  if (!newest_) return std::nullopt;
+  return bind(*newest_, nullptr);
+}
+
+std::vector<std::byte> PowderBed::bind(const Plane& mask, const Plane* above) {
   const std::size_t row_bytes = (static_cast<std::size_t>(mask.width) + 7) / 8;
   std::vector<std::byte> out(row_bytes * static_cast<std::size_t>(mask.height));
   for (int y = 0; y < mask.height; ++y) {
@@ -86,26 +125,13 @@ std::vector<std::byte> bind(const Plane& mask, const Plane* above) {
   return out;
 }
 
-}  // namespace
-
 PrintedVolume print_volume(const EmulatedJob& job) {
-  const auto header = nlohmann::json::parse(job.header);
-  PrintedVolume volume;
-  header.at("size_px").get_to(volume.size_px);
-  volume.pitch_mm = header.value("pitch_mm", std::array<double, 3>{0.1, 0.1, 0.1});
-  volume.origin_mm = header.value("origin_mm", std::array<double, 3>{0, 0, 0});
-  volume.size_px[2] = static_cast<int>(job.layers.size());
-  std::vector<Plane> masks;  // the layer and the one above it
-  for (std::size_t layer = 0; layer < job.layers.size(); ++layer) {
-    if (masks.empty()) {
-      masks.push_back(unpack_mask(job.layers[layer], volume.size_px[0], volume.size_px[1]));
-    }
-    if (layer + 1 < job.layers.size()) {
-      masks.push_back(unpack_mask(job.layers[layer + 1], volume.size_px[0], volume.size_px[1]));
-    }
-    volume.layers.push_back(bind(masks[0], masks.size() > 1 ? &masks[1] : nullptr));
-    masks.erase(masks.begin());
+  PowderBed bed(job.header, static_cast<int>(job.layers.size()));
+  PrintedVolume volume{bed.info().size, bed.info().pitch_mm, bed.info().origin_mm, {}};
+  for (const std::vector<std::byte>& records : job.layers) {
+    if (auto layer = bed.take(records)) volume.layers.push_back(*std::move(layer));
   }
+  if (auto layer = bed.top()) volume.layers.push_back(*std::move(layer));
   return volume;
 }
 
