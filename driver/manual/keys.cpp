@@ -72,7 +72,8 @@ Keys sent() {
           {"layers", "number of layers of the whole job"},
           {"first_layer_sent", "the first layer of this call; above 0 where a job was resumed"},
           {"bytes_sent", "size of what was sent, bytes"},
-          {"seconds", "how long that took, s"}};
+          {"seconds", "how long that took, s"},
+          {"printed", "emulator: alone: the folder of what it printed"}};
 }
 
 Keys job_status() {
@@ -361,6 +362,16 @@ const std::map<std::string, std::vector<KeyTable> (*)()>& pages() {
        }},
       {"print", [] { return std::vector{result(sent())}; }},
       {"resume", [] { return std::vector{result(sent())}; }},
+      {"emulator",
+       [] {
+         return std::vector{
+             result({{"out", "the folder that the printer was in"},
+                     {"jobs[].job", "a job's number"},
+                     {"jobs[].done", "whether all of it was printed"},
+                     {"jobs[].layers", "number of layers that were printed"},
+                     {"jobs[].printed", "the folder of what it printed, or null"}}),
+             stack_json("The folder of what a job printed is a measured stack, with stack.json:")};
+       }},
       {"status",
        [] {
          KeyTable table = result(job_status() + within("jobs[]", job_status()));

@@ -12,9 +12,11 @@
 #include <vector>
 
 #include "driver/base/console.h"
+#include "driver/base/interrupt.h"
 #include "driver/emulator/folder_printer.h"
 #include "driver/verbs/verbs.h"
 #include "slicer/base/error.h"
+#include "slicer/base/work.h"
 
 namespace binderjet {
 namespace {
@@ -53,10 +55,10 @@ class Log {
     switch (news) {
       case News::kBegins:
         console_.note(fmt::format("job {}: begins, {} layers", job.id, job.layer_count));
-        bar_.emplace(console_, "job " + job.id, job.layer_count);
+        bar_.emplace(console_.work(), "printing job " + job.id, job.layer_count, "layers");
         return;
       case News::kLayer:
-        if (bar_) bar_->advance(job.layers);
+        if (bar_) bar_->reach(job.layers);
         return;
       case News::kDone:
       case News::kGone:
@@ -86,7 +88,7 @@ class Log {
   }
 
   const Console& console_;
-  std::optional<Progress> bar_;
+  std::optional<Stage> bar_;
   nlohmann::ordered_json jobs_ = nlohmann::ordered_json::array();
 };
 

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <CLI/CLI.hpp>
+#include <csignal>
 #include <regex>
 #include <set>
 #include <sstream>
@@ -12,6 +13,7 @@
 #include "tests/support/caliper_readings.h"
 #include "tests/support/models.h"
 #include "tests/support/program.h"
+#include "tests/support/started_program.h"
 #include "transport/job/job_file.h"
 #include "transport/open/open_backend.h"
 
@@ -117,6 +119,18 @@ class Keys : public testing::Test {
     run({"calibrate", "-p", "z450", "--gauges", here_ / "gauges.csv", "-o", here_ / "gauges"});
     expect_file("gauges/calibration.json", "calibrate");
   }
+  void print_to_an_emulator(const std::string& job) {
+    Started emulator({"emulator", "-o", here_ / "printer", "--json"}, false);
+    EXPECT_THAT(emulator.line(), testing::HasSubstr("ready"));
+    const Json sent = run({"print", job, "--to", "emulator:" + (here_ / "printer")});
+    EXPECT_TRUE(sent.contains("printed"));
+    expect_file("printer/1/stack.json", "emulator");
+    emulator.signal(SIGTERM);
+    const Json ended = Json::parse(emulator.end().out);
+    EXPECT_FALSE(ended["jobs"].empty());
+    EXPECT_THAT(unnamed(ways_of(ended), "emulator"), IsEmpty());
+    ran_.insert("emulator");
+  }
   void hold_a_job() const {
     const JobReader job = *JobReader::open(here_ / "a.bjob");
     const auto spool = *open_backend(spool_);
@@ -157,6 +171,7 @@ TEST_F(Keys, OfEveryVerbStandInItsManPage) {
   hold_a_job();
   run({"cancel", "3", "--to", spool_});
   run({"devices", "--to", spool_});
+  print_to_an_emulator(job);
   run({"profile", "list"});
   run({"profile", "show", "z450"});
   run({"profile", "check", "z450-fig3"});

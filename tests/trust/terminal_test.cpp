@@ -20,8 +20,9 @@ using testing::HasSubstr;
 using testing::IsEmpty;
 using testing::Not;
 
-// Verbs that read or write one small thing, however large the part is.
-const std::set<std::string> kShort = {"coupon", "status", "cancel", "devices", "profile"};
+// Verbs that read or write one small thing, however large the part is; and emulator, which waits.
+const std::set<std::string> kShort = {"coupon",  "status",  "cancel",
+                                      "devices", "profile", "emulator"};
 
 // What only writes to the disk stands in writing_verbs() already.
 std::vector<Verb> long_verbs() {
