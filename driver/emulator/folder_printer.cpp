@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "driver/base/transport_errors.h"
+#include "transport/base/file.h"
 #include "transport/emulator/emulator_backend.h"
 #include "transport/emulator/socket_server.h"
 #include "transport/spool/spool.h"
