@@ -232,7 +232,7 @@ void run(const ExportOptions& options, const Console& console) {
     json["outputs"].push_back({{"out", one.path}, {"what", word(one.output)}});
     text += fmt::format("{}{}: {} layers", text.empty() ? "" : "\n", one.path, layers);
   }
-  if (outputs.size() == 1) json.update(json["outputs"].front());
+  if (outputs.size() == 1) json.update(nlohmann::ordered_json(json["outputs"].front()));
   json["layers"] = layers;
   console.result(json, text);
 }

@@ -86,14 +86,15 @@ TEST_F(ExportVerb, WritesInOneCallWhatItWritesInMany) {
 }
 
 TEST_F(ExportVerb, SaysEachOutput) {
-  const auto json = run({"-o", here_ / "all", "--what", "mask,target", "--zip", here_ / "a.zip"});
-  ASSERT_EQ(json.status, 0) << json.err;
+  const Ran ran = run({"-o", here_ / "all", "--what", "mask,target", "--zip", here_ / "a.zip"});
+  ASSERT_EQ(ran.status, 0) << ran.err;
+  const nlohmann::json json = ran.json();
   std::vector<std::string> what;
-  for (const auto& one : json.json()["outputs"]) what.push_back(one["what"]);
+  for (const auto& one : json["outputs"]) what.push_back(one["what"]);
   EXPECT_THAT(what, ElementsAre("mask", "target", "zip"));
-  EXPECT_EQ(json.json()["outputs"][1]["out"], here_ / "all/target");
-  EXPECT_GT(json.json()["layers"], 10);
-  EXPECT_FALSE(json.json().contains("out"));
+  EXPECT_EQ(json["outputs"][1]["out"], here_ / "all/target");
+  EXPECT_GT(json["layers"], 10);
+  EXPECT_FALSE(json.contains("out"));
 }
 
 TEST_F(ExportVerb, SaysOneOutputAsItAlwaysDid) {
