@@ -3,7 +3,7 @@
 # Installs what is missing, builds, and runs the main job on a model that the program makes itself.
 set -euo pipefail
 cd "$(dirname "$0")/.."
-bash tests/build.sh build binderjet
+bash tests/build.sh program
 out=build/demo
 rm -rf "$out"
 mkdir -p "$out"

@@ -11,7 +11,7 @@ folder=$1 binderjet=$2 emulator=$3 capture=$4 make_job=$5
 
 for tool in qemu-system-x86_64 busybox cpio xz depmod udevadm mke2fs debugfs tshark readelf; do
   command -v "$tool" >/dev/null || {
-    echo "run.sh: no $tool: install what tests/packages.txt lists" >&2
+    echo "run.sh: no $tool: bash tests/packages/install.sh package tests" >&2
     exit 1
   }
 done
