@@ -1,6 +1,7 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: GPL-3.0-or-later
-# Installs what is missing, builds, and runs the main job on a model that the program makes itself.
+# Installs what the program needs, builds it, and does the main job on a test part that it makes
+# itself: masks, a print by an emulated printer, and a page to look at.
 set -euo pipefail
 cd "$(dirname "$0")/.."
 bash tests/build.sh program
@@ -9,15 +10,18 @@ rm -rf "$out"
 mkdir -p "$out"
 
 set -x
-build/binderjet coupon --kind golfball -o "$out/ball.stl"
-build/binderjet slice "$out/ball.stl" --scale 0.4 -p z450 --enhance inverse -o "$out/ball.bjob"
-build/binderjet export "$out/ball.bjob" -o "$out/masks"
-build/binderjet simulate "$out/ball.bjob" -p z450 -o "$out/printed"
-build/binderjet score "$out/ball.bjob" --target "$out/ball.stl"
-build/binderjet print "$out/ball.bjob" --to "spool:$out/spool"
+build/binderjet coupon --kind full -o "$out/part.stl"
+build/binderjet slice "$out/part.stl" -p z450 -o "$out/part.bjob"
+build/binderjet score "$out/part.bjob" --target "$out/part.stl"
+build/binderjet print "$out/part.bjob" --to "emulator:$out/printer"
+build/binderjet export "$out/part.bjob" -o "$out/masks" --html "$out/part.html"
 set +x
 
+page=$PWD/$out/part.html
 echo
-echo "The masks that would be sent:     $out/masks/mask_000084.png and its neighbors"
-echo "What the printer makes of them:   $out/printed/printed_000084.png"
-echo "The job as a printer would get it: $out/spool/done"
+echo "Masks, one PNG a layer: $out/masks    what the emulated printer made of them: $out/printer/1"
+echo "Red is missing, blue too much: above what plain masks would print, below what ours do."
+if [ -n "${DISPLAY:-}${WAYLAND_DISPLAY:-}" ] && command -v xdg-open > /dev/null; then
+  xdg-open "$page" > /dev/null 2>&1 &
+fi
+echo "file://$page"
