@@ -132,7 +132,8 @@ Keys found_effects() {
                "the number of the model that changes"},
               {"parameters.NAME",
                "its numbers, named as in a profile; for gauges value, the best, "
-               "and from and to, between which all gauges agree"}} +
+               "and from and to, between which all gauges agree, or for lengths "
+               "mm of each batch, column or axis"}} +
          within("covariate", covariate()) +
          Keys{{"rivals[]", "kinds that explain the print as well"},
               {"p", "how often chance alone finds as much; null where so few readings cannot say"},

@@ -56,7 +56,7 @@ Bytes filter_up(std::span<const std::byte> bits, std::size_t stride, int height)
 }
 
 Bytes zlib_deflate(Bytes& raw) {
-  isal_zstream stream;
+  isal_zstream stream{};  // what a job before left in it would change the bytes
   isal_deflate_stateless_init(&stream);
   Bytes level_buffer(ISAL_DEF_LVL1_DEFAULT);
   Bytes out(raw.size() + raw.size() / 8 + 1024);

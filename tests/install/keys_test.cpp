@@ -73,7 +73,7 @@ bool names(const std::string& pattern, const std::string& way) {
   std::string regex;
   for (const char c : pattern)
     regex += std::isalnum(c) != 0 || c == '_' ? std::string(1, c) : std::string("\\") + c;
-  regex = std::regex_replace(regex, std::regex("NAME"), "[a-z0-9_]+");
+  regex = std::regex_replace(regex, std::regex("NAME"), "[a-z0-9_ ]+");
   regex = std::regex_replace(regex, std::regex(R"(\\\[\\\]$)"), "");  // a list of values
   return std::regex_match(way, std::regex(regex));
 }
