@@ -42,7 +42,12 @@ void FolderPrinter::serve(const std::function<bool()>& stop) {
 }
 
 PlayedPrinter::PlayedPrinter(const std::string& folder)
-    : printer_(folder, {}, [](MeasuredPrints::News, const PrintedJob&) {}), thread_([this] {
+    : printer_(folder, {},
+               [this](MeasuredPrints::News, const PrintedJob& job) {
+                 const std::lock_guard lock(mutex_);
+                 why_not_ = job.why_not;
+               }),
+      thread_([this] {
         try {
           printer_.serve([this] { return stopped_.load(); });
         } catch (...) {
@@ -59,6 +64,11 @@ void PlayedPrinter::stop() {
   stopped_ = true;
   thread_.join();
   if (failure_) std::rethrow_exception(failure_);
+}
+
+std::string PlayedPrinter::why_not() {
+  const std::lock_guard lock(mutex_);
+  return why_not_;
 }
 
 std::unique_ptr<PlayedPrinter> play_printer(const std::string& uri) {

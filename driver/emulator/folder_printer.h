@@ -7,6 +7,7 @@
 #include <exception>
 #include <functional>
 #include <memory>
+#include <mutex>
 #include <string>
 #include <thread>
 
@@ -41,8 +42,12 @@ class PlayedPrinter {
 
   // Ends it, and throws what had ended it before.
   void stop();
+  // Why nothing is written of the newest job that is done; "" where all is.
+  std::string why_not();
 
  private:
+  std::mutex mutex_;
+  std::string why_not_;
   FolderPrinter printer_;
   std::atomic<bool> stopped_{false};
   std::exception_ptr failure_;

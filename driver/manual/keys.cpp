@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "slicer/model/effects/catalogue.h"
+#include "slicer/model/effects/covariate.h"
 #include "slicer/model/effects/effect.h"
 
 namespace binderjet {
@@ -106,18 +107,14 @@ KeyTable stack_json(const std::string& about) {
 }
 
 Keys covariate() {
-  return {{"axis",
-           "what the effect follows: x, y, z, layer, direction, density, facing, edge_distance, "
-           "position; empty: the same everywhere"},
-          {"form", "how: trend, periodic, step, window or local"},
-          {"direction_deg", "the direction on the bed, degrees from x towards y"},
-          {"period_mm", "of a periodic form, mm"},
-          {"period_layers", "of a periodic form, layers"},
-          {"at_mm", "where a step is, mm"},
-          {"from_mm", "where a window begins, mm"},
-          {"to_mm", "where a window ends, mm"},
-          {"centre_mm", "the middle of a local form: x, y in mm"},
-          {"radius_mm", "how far a local form reaches, mm"}};
+  Keys keys = {{"axis",
+                "what the effect follows: x, y, z, layer, direction, density, facing, "
+                "edge_distance, position; empty: the same everywhere"},
+               {"form", "how: trend, periodic, step, window or local"}};
+  for (const CovariateNumber& number : covariate_numbers()) {
+    keys.push_back({number.name, number.meaning});
+  }
+  return keys;
 }
 
 Keys print_error() {
@@ -137,7 +134,9 @@ Keys found_effects() {
          within("covariate", covariate()) +
          Keys{{"rivals[]", "kinds that explain the print as well"},
               {"p", "how often chance alone finds as much; null where so few readings cannot say"},
-              {"heldout_gain", "share of the error gone in data that the fit did not see"}};
+              {"heldout_gain",
+               "share of the residual gone in the cells that the fit did not see, or, of what "
+               "moves no edge, of the wrong voxels"}};
 }
 
 std::vector<KeyTable> calibrate_tables() {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Writes the man pages and the completion for bash into a folder: binderjet_manual FOLDER
+// Writes the man pages, keys.md and the completion for bash into a folder: binderjet_manual FOLDER
 #include <fmt/core.h>
 
 #include <CLI/CLI.hpp>
@@ -20,6 +20,7 @@ int main(int argc, char** argv) {
     for (const CLI::App* verb : program->get_subcommands({})) {
       write_text(folder + "/binderjet-" + verb->get_name() + ".1", verb_page(*verb));
     }
+    write_text(folder + "/keys.md", keys_page(*program));
     write_text(folder + "/binderjet", bash_completion(*program));
   } catch (const std::exception& error) {
     fmt::print(stderr, "{}\n", error.what());

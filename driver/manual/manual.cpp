@@ -160,6 +160,26 @@ std::string verb_page(const CLI::App& verb) {
   return out;
 }
 
+std::string keys_page(const CLI::App& program) {
+  std::string out =
+      "<!-- SPDX-License-Identifier: GPL-3.0-or-later -->\n"
+      "# Every key of JSON and every column of CSV\n\n"
+      "The man pages say the same, verb by verb. `found[].at_mm` is `at_mm` of each object of the "
+      "list "
+      "`found`.\n"
+      "Made by `build/driver/binderjet_manual build/manual` (`build/manual/keys.md`).\n";
+  for (const CLI::App* verb : program.get_subcommands({})) {
+    for (const KeyTable& table : key_tables(verb->get_name())) {
+      out += fmt::format("\n## {}: {}\n\n{}\n\n| key | meaning |\n|---|---|\n", verb->get_name(),
+                         table.title, table.about);
+      for (const Key& key : table.keys) {
+        out += fmt::format("| `{}` | {} |\n", key.name, key.meaning);
+      }
+    }
+  }
+  return out;
+}
+
 std::string bash_completion(const CLI::App& program) {
   std::string verbs;
   std::string cases;

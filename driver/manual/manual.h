@@ -14,6 +14,8 @@ namespace binderjet {
 std::string program_page(const CLI::App& program);
 // binderjet-VERB.1: what --help of the verb says, and what its JSON and CSV mean (keys.h).
 std::string verb_page(const CLI::App& verb);
+// What JSON and CSV of all verbs mean, in Markdown: keys.md beside this file.
+std::string keys_page(const CLI::App& program);
 // For /usr/share/bash-completion/completions.
 std::string bash_completion(const CLI::App& program);
 

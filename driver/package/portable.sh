@@ -5,6 +5,9 @@
 #   portable.sh [BUILD]         makes BUILD/binderjet-VERSION-linux-PROCESSOR.tar.xz
 #   portable.sh BUILD FOLDER    makes the folder alone, which must not be there yet
 set -euo pipefail
+paths=()
+for path in "$@"; do paths+=("$(realpath -m "$path")"); done
+set -- "${paths[@]}"
 cd "$(dirname "$0")/../.."
 build=${1:-build}
 if [ ! -x "$build/binderjet" ] || [ ! -e "$build/manual/binderjet.1" ]; then

@@ -185,8 +185,14 @@ void send_layers(const Console& console, const std::string& uri, const JobTicket
                                  ticket.layer_count - 1, ticket.layer_count, uri, seconds);
   if (emulated_in) {
     const std::string printed = *emulated_in + "/" + id;
-    result["printed"] = printed;
-    text += ", printed as " + printed;
+    std::error_code error;
+    const bool written = fs::exists(printed + "/stack.json", error);  // since before the job's end
+    result["printed"] = written ? nlohmann::ordered_json(printed) : nullptr;
+    if (written) text += ", printed as " + printed;
+    if (!written) {
+      console.warning("nothing is written of what it printed: " +
+                      (played ? played->why_not() : "the emulator says why"));
+    }
   }
   console.result(result, text);
 }

@@ -194,5 +194,16 @@ TEST_F(Keys, OfEveryGaugeTableStandInTheManPageOfCalibrate) {
   expect_table(here_.text("lengths.csv"));
 }
 
+TEST(KeysPage, IsWhatTheProgramSays) {
+  const auto text = [](const std::string& path) {
+    std::ostringstream out;
+    out << std::ifstream(path).rdbuf();
+    return out.str();
+  };
+  EXPECT_EQ(text(BINDERJET_SOURCE_DIR "/driver/manual/keys.md"),
+            text(BINDERJET_BUILD_DIR "/manual/keys.md"))
+      << "cp build/manual/keys.md driver/manual/";
+}
+
 }  // namespace
 }  // namespace binderjet

@@ -32,7 +32,7 @@ const std::vector<Scheme>& schemes();
 // Null for a URI that names none.
 const Scheme* find_scheme(const std::string& uri);
 
-// "usb:, usb://VID:PID/SERIAL, spool:DIR or file:PATH"; `with_jobs`: only those that keep jobs.
+// "usb:, usb://VID:PID/SERIAL, emulator:DIR, spool:DIR or file:PATH"; `with_jobs`: only those that keep jobs.
 std::string scheme_forms(bool with_jobs = false);
 
 // An unknown scheme is kBadInput.

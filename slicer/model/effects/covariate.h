@@ -25,11 +25,18 @@ struct Covariate {
 
   Axis axis = Axis::kNone;
   Form form = Form::kConstant;
-  // By the keys of calibration.json: direction_deg, period_mm, period_layers, at_mm, centre_mm ...
+  // By the keys of calibration.json (covariate_numbers()).
   std::map<std::string, std::vector<double>> numbers{};
 
   bool operator==(const Covariate&) const = default;
 };
+
+// The numbers that a dependence may have, each with what it means and its unit.
+struct CovariateNumber {
+  const char* name;
+  const char* meaning;
+};
+const std::vector<CovariateNumber>& covariate_numbers();
 
 // The words of calibration.json; "" for none and for constant.
 const std::string& word(Covariate::Axis axis);

@@ -195,7 +195,10 @@ TEST_F(EmulatorVerb, PrintsAJobWhoseHeaderSaysNothingAndSaysSo) {
   auto writer = JobWriter::create(folder_ / "b.bjob", R"({"size_px": [9000000, 9000000, 1]})");
   ASSERT_TRUE(writer->append(print_records(0)));
   ASSERT_TRUE(writer->finish());
-  EXPECT_EQ(run({"print", folder_ / "b.bjob", "--to", to_}).status, 0);
+  const Ended printed = run({"print", folder_ / "b.bjob", "--to", to_});
+  EXPECT_EQ(printed.status, 0);
+  EXPECT_THAT(printed.err, HasSubstr("nothing is written"));
+  EXPECT_THAT(printed.out, Not(HasSubstr("printed as")));
   EXPECT_THAT(emulator->line(), HasSubstr("job 1: begins"));
   EXPECT_THAT(emulator->line(), HasSubstr("nothing is written"));
   EXPECT_EQ(run({"print", job_, "--to", to_}).status, 0);

@@ -16,7 +16,8 @@ std::vector<std::string> profiles(const Workplace& here) {
   const Ran ran = here.run({"profile", "list", "--json"});
   EXPECT_EQ(ran.status, 0) << ran.err;
   std::vector<std::string> names;
-  for (const auto& profile : ran.json()["profiles"]) names.push_back(profile["name"]);
+  const nlohmann::json json = ran.json();
+  for (const auto& profile : json["profiles"]) names.push_back(profile["name"]);
   return names;
 }
 

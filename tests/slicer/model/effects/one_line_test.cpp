@@ -61,8 +61,8 @@ std::set<std::string> files_with(const std::map<std::string, std::string>& files
 // Words in quotes that name something else in the program too, and where. All other words of
 // effects and of their parameters stand in the files of effects alone.
 const std::map<std::string, std::set<std::string>> kOtherMeanings = {
-    // the cut of a scan's gray values (slices.json)
-    {"threshold", {"slicer/stack/read_stack.cpp"}},
+    // the cut of a scan's gray values (stack.json)
+    {"threshold", {"slicer/stack/read_stack.cpp", "driver/manual/keys.cpp"}},
     // what a dependence may be on
     {"density",
      {"slicer/calibrate/residual/residual_by_axis.cpp", kEffects + "covariate.cpp",
