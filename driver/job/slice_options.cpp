@@ -82,9 +82,13 @@ void add_slice_options(CLI::App& verb, SliceOptions& options) {
                 "inverse: masks for a printer that may be a little off (default), not for the "
                 "profile's model alone");
   verb.add_option("--layer", options.layer_mm, "layer height in mm, one the printer has");
-  verb.add_option("--scale", options.placement.scale, "scale factor")
+  CLI::Option* scale = verb.add_option("--scale", options.placement.scale, "scale factor")
+                           ->check(CLI::PositiveNumber)
+                           ->capture_default_str();
+  verb.add_option("--size", options.size_mm,
+                  "instead: scale each part so that its largest side is so many mm")
       ->check(CLI::PositiveNumber)
-      ->capture_default_str();
+      ->excludes(scale);
   verb.add_option("--units", options.units,
                   "the model's unit: mm, cm, m, um, in, ft (default: what the file says, else mm)");
   verb.add_option("--rotate", options.placement.rotate_deg,

@@ -26,6 +26,7 @@ struct SliceOptions {
   bool robust = true;
   std::optional<double> layer_mm;
   std::string units;
+  std::optional<double> size_mm;  // of each part's largest side, instead of a scale
   Placement placement;
   std::vector<std::string> at;
   std::string layers;

@@ -1,10 +1,14 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "driver/job/slice_plan.h"
 
+#include <fmt/core.h>
 #include <malloc.h>
 
 #include <algorithm>
+#include <array>
 #include <filesystem>
+#include <optional>
+#include <string>
 #include <utility>
 
 #include "driver/job/parts.h"
@@ -29,6 +33,18 @@ void use_texture(const std::string& file, Paint& paint) {
   paint.corners = {};
 }
 
+// Where a size is asked for a part is read twice, since the scale also says how thick a wall is.
+Part load_part_of_size(const std::string& file, std::optional<double> unit_mm, Placement placement,
+                       std::optional<double> size_mm, const Work& work) {
+  if (size_mm) {
+    placement.scale = 1;
+    const std::array<double, 3> size =
+        load_part(file, unit_mm, placement, false, work).request.size_mm;
+    placement.scale = *size_mm / *std::max_element(size.begin(), size.end());
+  }
+  return load_part(file, unit_mm, placement, true, work);
+}
+
 // Reads the parts and decides where each stands: where --at says, else as they fit.
 std::vector<Part> load_parts(const SliceOptions& options, const JobHeader& header,
                              const Work& work) {
@@ -43,7 +59,7 @@ std::vector<Part> load_parts(const SliceOptions& options, const JobHeader& heade
     if (i < options.at.size()) {
       placement.at_mm = bed_place(options.at[i]);
     }
-    parts.push_back(load_part(options.parts[i], unit_mm, placement, true, work));
+    parts.push_back(load_part_of_size(options.parts[i], unit_mm, placement, options.size_mm, work));
     if (!options.texture.empty()) use_texture(options.texture, parts.back().paint);
     requests.push_back(parts.back().request);
   }
@@ -78,6 +94,11 @@ SlicePlan plan_slices(const SliceOptions& options, const Console& console) {
   }
   plan.color = take_color(parts, header.grid, header.profile.color, plan.warnings, work);
   for (const std::string& warning : plan.warnings) console.warning(warning);
+  for (const Part& part : parts) {
+    const std::array<double, 3>& size = part.request.size_mm;
+    console.note(fmt::format("{}: {:.1f} x {:.1f} x {:.1f} mm", part.request.where, size[0],
+                             size[1], size[2]));
+  }
   plan.mesh = std::make_shared<const Mesh>(merge_parts(std::move(parts), header.grid));
   header.box = job_box(bounding_box(*plan.mesh).max, header.grid, lower_corner(header.sources),
                        PrinterModel(header.profile.effects, header.grid).reach().xy_vx);

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <regex>
 
 #include "slicer/mesh/boundary.h"
 #include "slicer/mesh/read/read_mesh.h"
@@ -66,6 +67,23 @@ TEST_F(MainJob, GivesTheSameJobWithAnyNumberOfThreads) {
   const std::string one = slice("a.bjob", {"--threads", "1"});
   EXPECT_EQ(slice("b.bjob", {"--threads", "2"}), one);
   EXPECT_EQ(slice("c.bjob"), one);
+}
+
+// The model's largest side is 10 mm less a dimple; what size it has nobody need know.
+TEST_F(MainJob, MakesAPartOfTheSizeAskedForAndSaysIt) {
+  const Ran ran = here_.run({"slice", model_, "-p", "z450", "--enhance", "none", "--units", "in",
+                             "--size", "6", "-o", here_ / "a.bjob"});
+  ASSERT_EQ(ran.status, 0) << ran.err;
+  EXPECT_TRUE(std::regex_search(ran.err, std::regex("model.obj: [56].[0-9] x 6.0 x [56].[0-9] mm\n|"
+                                                    "model.obj: 6.0 x |x 6.0 mm\n")))
+      << ran.err;
+  here_.run({"export", here_ / "a.bjob", "-o", here_ / "size"});
+  EXPECT_EQ(StackReader(here_ / "size").info().size[2], 59);  // 6 mm in layers of 0.102
+  EXPECT_EQ(here_
+                .run({"slice", model_, "-p", "z450", "--size", "6", "--scale", "2", "-o",
+                      here_ / "b.bjob"})
+                .status,
+            2);
 }
 
 TEST_F(MainJob, GivesTheSameMasksAnywhereOnTheBed) {
