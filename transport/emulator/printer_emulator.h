@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // A printer that speaks binderjet-1 (transport/PROTOCOL.md), with faults on order, and that
-// remembers what it was sent. Front ends put it on a bus (usb_device.h).
+// remembers what it was sent. Front ends put it on a bus or a socket (emulated_usb_device.h).
 #pragma once
 
 #include <chrono>
