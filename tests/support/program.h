@@ -8,6 +8,7 @@
 
 #include <array>
 #include <chrono>
+#include <csignal>
 #include <cstdio>
 #include <cstdlib>
 #include <filesystem>
@@ -56,6 +57,7 @@ class Workplace {
     std::fflush(nullptr);  // or the child writes once more what we have not yet written
     const pid_t child = fork();
     if (child == 0) {
+      std::signal(SIGINT, SIG_DFL);  // which who runs the tests by & has told them to ignore
       limit(RLIMIT_CPU, seconds);
       if (memory_mb != 0) limit(RLIMIT_AS, memory_mb << 20);
       std::vector<char*> argv = {const_cast<char*>(BINDERJET_PROGRAM)};

@@ -38,6 +38,7 @@ class Started {
     argv.push_back(nullptr);
     child_ = fork();
     if (child_ == 0) {
+      std::signal(SIGINT, SIG_DFL);  // which who runs the tests by & has told them to ignore
       dup2(out[1], STDOUT_FILENO);
       dup2(err[1], STDERR_FILENO);
       // Opened before: nobody need not come into the folder that this was built in.
