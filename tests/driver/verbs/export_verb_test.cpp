@@ -125,7 +125,9 @@ TEST_F(ExportVerb, LeavesNoneWhereOneFails) {
   EXPECT_EQ(ran.status, 3) << ran.err;
   EXPECT_THAT(ran.err, HasSubstr("missing/a.html"));
   EXPECT_FALSE(std::filesystem::exists(here_ / "a.zip"));
-  if (std::filesystem::exists(here_ / "all")) EXPECT_THAT(names("all"), IsEmpty());
+  if (std::filesystem::exists(here_ / "all")) {
+    EXPECT_THAT(names("all"), IsEmpty());
+  }
   EXPECT_THAT(names("."), testing::Each(testing::Not(HasSubstr(".part-"))));
 }
 
