@@ -91,8 +91,8 @@ TEST_F(Viewer, ShowsTheExportedPixelsInABrowserWithoutANetwork) {
   const RunLayer plain = StackReader(here_ / "plain").read(kLayer);
   const RunLayer wanted = StackReader(here_ / "target").read(2 * kLayer);
   const RunLayer above = StackReader(here_ / "target").read(2 * kLayer + 1);
-  const auto difference = [](bool wanted, bool printed) {
-    return wanted ? (printed ? kSame : kMissing) : (printed ? kExtra : kPowder);
+  const auto difference = [](bool is_wanted, bool is_printed) {
+    return is_wanted ? (is_printed ? kSame : kMissing) : (is_printed ? kExtra : kPowder);
   };
   for (const char* zoom : {"whole", "near"}) {
     SCOPED_TRACE(zoom);
