@@ -85,9 +85,20 @@ class Layout {
   }
 
   bool fits(const Point& size) const {
-    return pixels_of(size[0], bed_.pitch_mm[0]) <= bed_.pixels(0) &&
-           pixels_of(size[1], bed_.pitch_mm[1]) <= bed_.pixels(1) &&
+    return last_corner(0, size[0]) >= 0 && last_corner(1, size[1]) >= 0 &&
            size[2] <= bed_.size_mm[2] + kTolerance;
+  }
+
+  // The last pixel corner of an axis where a part of that size still ends on the bed; below 0 if
+  // the part is larger. Of the bed, not of its pixels, the last of which may reach over the edge.
+  int last_corner(int axis, double size_mm) const {
+    const auto a = static_cast<std::size_t>(axis);
+    return static_cast<int>(
+        std::floor((bed_.size_mm[a] - size_mm + kTolerance) / bed_.pitch_mm[a]));
+  }
+
+  bool on_bed(int x, int y, const Point& size) const {
+    return x >= 0 && y >= 0 && x <= last_corner(0, size[0]) && y <= last_corner(1, size[1]);
   }
 
   void check_size(const BedRequest& part) const {
@@ -96,7 +107,7 @@ class Layout {
     double scale = bed_.size_mm[2] / size[2];
     for (int axis = 0; axis < 2; ++axis) {
       const auto a = static_cast<std::size_t>(axis);
-      scale = std::min(scale, bed_.pixels(axis) * bed_.pitch_mm[a] / size[a]);
+      scale = std::min(scale, bed_.size_mm[a] / size[a]);
     }
     // Two digits, rounded down, so that the advice is easy to type and true.
     const double advice = scale * part.scale;
@@ -126,15 +137,14 @@ class Layout {
     Rectangle place = rectangle(part);
     place.x = static_cast<int>(std::lround(at_mm[0] / bed_.pitch_mm[0]));
     place.y = static_cast<int>(std::lround(at_mm[1] / bed_.pitch_mm[1]));
-    if (place.x < 0 || place.y < 0 || place.x + place.width > bed_.pixels(0) ||
-        place.y + place.depth > bed_.pixels(1)) {
+    if (!on_bed(place.x, place.y, part.size_mm)) {
       throw Error(
           ErrorKind::kBadInput, part.where,
           fmt::format("at {:g},{:g} it reaches {:.1f},{:.1f} mm, off the bed of {}; --at up "
                       "to {:.1f},{:.1f} fits",
                       at_mm[0], at_mm[1], at_mm[0] + part.size_mm[0], at_mm[1] + part.size_mm[1],
-                      bed_text(bed_), (bed_.pixels(0) - place.width) * bed_.pitch_mm[0],
-                      (bed_.pixels(1) - place.depth) * bed_.pitch_mm[1]));
+                      bed_text(bed_), last_corner(0, part.size_mm[0]) * bed_.pitch_mm[0],
+                      last_corner(1, part.size_mm[1]) * bed_.pitch_mm[1]));
     }
     for (std::size_t i = 0; i < taken_.size(); ++i) {
       // Who says --at may put parts as near as he likes, but not into each other.
@@ -149,14 +159,13 @@ class Layout {
   }
 
   BedSpot middle(const BedRequest& part) const {
-    const Rectangle place = rectangle(part);
-    const auto center = [&](int axis, int pixels) {
+    const auto center = [&](int axis) {
       const auto a = static_cast<std::size_t>(axis);
       const double corner = (bed_.size_mm[a] - part.size_mm[a]) / 2;
       const int nearest = static_cast<int>(std::lround(corner / bed_.pitch_mm[a]));
-      return std::clamp(nearest, 0, bed_.pixels(axis) - pixels);
+      return std::clamp(nearest, 0, last_corner(axis, part.size_mm[a]));
     };
-    return {center(0, place.width), center(1, place.depth)};
+    return {center(0), center(1)};
   }
 
   // Rows of falling depth: the first part of a row is its deepest.
@@ -172,13 +181,13 @@ class Layout {
       Rectangle place = rectangle(parts_[index]);
       place.x = x;
       place.y = row_y;
-      while (!settle(place)) {
+      while (!settle(place, parts_[index].size_mm)) {
         // The next row begins behind this one, or a pixel on where this one had no room at all.
         row_y += row_depth > 0 ? row_depth + gap_y_ : 1;
         row_depth = 0;
         place.x = 0;
         place.y = row_y;
-        if (row_y + place.depth > bed_.pixels(1)) refuse(index);
+        if (row_y > last_corner(1, parts_[index].size_mm[1])) refuse(index);
       }
       take(place, index);
       spots[index] = {place.x, place.y};
@@ -189,7 +198,7 @@ class Layout {
   }
 
   // Moves right along its row past what stands there; false if the row has no room left.
-  bool settle(Rectangle& place) const {
+  bool settle(Rectangle& place, const Point& size) const {
     bool moved = true;
     while (moved) {
       moved = false;
@@ -200,7 +209,7 @@ class Layout {
         }
       }
     }
-    return place.x + place.width <= bed_.pixels(0) && place.y + place.depth <= bed_.pixels(1);
+    return on_bed(place.x, place.y, size);
   }
 
   [[noreturn]] void refuse(std::size_t index) const {

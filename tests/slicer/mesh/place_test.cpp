@@ -108,6 +108,25 @@ TEST(Place, FillsTheBedToItsLastPixel) {
   EXPECT_THAT(error_placing({request({10, 254.001, 10})}), HasSubstr("does not fit"));
 }
 
+// The bed's last pixel reaches 0.027 mm over its edge, a part beside others must not.
+TEST(Place, EndsOnTheBedAlsoInItsLastPixel) {
+  const double beside = 203 - 2135 * kBed.pitch_mm[0];  // ends with the bed from pixel 2135
+  EXPECT_EQ(place_parts({request({10, 20, 5}, {{0, 0}}), request({beside, 10, 5}, {{180.8, 0}})},
+                        kBed, 2)[1]
+                .x_px,
+            2135);
+  EXPECT_THAT(error_placing(
+                  {request({10, 20, 5}, {{0, 0}}), request({beside + 0.01, 10, 5}, {{180.8, 0}})}),
+              HasSubstr("off the bed"));
+  // 180.6 mm and the gap are 2158 pixels; what is left is 20.285 mm.
+  const std::vector<BedSpot> row =
+      place_parts({request({180.6, 20, 5}), request({20.28, 10, 5})}, kBed, 2);
+  EXPECT_EQ(row[0].y_px, row[1].y_px);
+  const std::vector<BedSpot> rows =
+      place_parts({request({180.6, 20, 5}), request({20.3, 10, 5})}, kBed, 2);
+  EXPECT_LT(rows[0].y_px, rows[1].y_px);
+}
+
 TEST(Place, SaysWhichScaleOrTurnWouldFit) {
   EXPECT_THAT(
       error_placing({request({300, 150.02, 120})}),
@@ -156,8 +175,9 @@ RC_GTEST_PROP(Place, KeepsSeveralPartsApartAndOnTheBed, ()) {
   if (*rc::gen::arbitrary<bool>()) parts.push_back(request({30, 40, 5}, {{80, 100}}));
   const int count = *rc::gen::inRange(1, 12);
   for (int i = 0; i < count; ++i) {
+    // Two of the widest fill a row up to the bed's edge.
     parts.push_back(
-        request({*rc::gen::inRange(1, 500) / 9.0, *rc::gen::inRange(1, 500) / 9.0, 10}));
+        request({*rc::gen::inRange(1, 900) / 9.0, *rc::gen::inRange(1, 200) / 9.0, 10}));
   }
   const std::vector<BedSpot> spots = place_parts(parts, kBed, 2);
   for (std::size_t i = 0; i < parts.size(); ++i) {
