@@ -49,7 +49,7 @@ for sanitizer in "$@"; do
       libraries=()
       alone=(transport emulator usb fuzz)
       computing=(slicer paper properties hidden_printers)
-      rest=(driver trust install)
+      rest=(read driver trust install)
       leave_out=${SLOW-$slow}
       ;;
     thread)  # what computes in parallel or sends

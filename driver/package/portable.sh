@@ -24,11 +24,13 @@ mkdir "$folder"
 # profiles from where it was started, it is the loader that was started.
 DESTDIR=$work/installed cmake --install "$build" --prefix / --strip > "$work/log"
 mkdir "$folder/bin" "$folder/lib"
-mv "$work/installed/bin/binderjet" "$folder/lib/"
+mv "$work/installed/bin/"* "$folder/lib/"
 mv "$work/installed/share" "$folder/"
 mkdir "$folder/share/binderjet/udev"
 cp udev/* "$folder/share/binderjet/udev/"
-install -m 755 driver/package/launcher.sh "$folder/bin/binderjet"
+for program in binderjet binderjet-read; do
+  install -m 755 driver/package/launcher.sh "$folder/bin/$program"
+done
 install -m 644 driver/package/portable.txt "$folder/README.txt"
 
 # What oneTBB opens by name when it starts: without them it runs, but allocates more slowly.
@@ -38,7 +40,7 @@ loaded() {  # the files that the given ones are linked with, as the loader would
 tbb=$(dirname "$(loaded "$build/binderjet" | grep '/libtbb\.so')")
 by_name=("$tbb"/libtbbmalloc.so.? "$tbb"/libtbbbind*.so.?)
 mapfile -t libraries < <(
-  { loaded "$build/binderjet" "${by_name[@]}"; printf '%s\n' "${by_name[@]}"; } | sort -u)
+  { loaded "$build/binderjet" "$build/binderjet-read" "${by_name[@]}"; printf '%s\n' "${by_name[@]}"; } | sort -u)
 cp -L "${libraries[@]}" "$folder/lib/"
 
 # Whose the libraries are: each package's license, and the version of the source that Debian keeps.

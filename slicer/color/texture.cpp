@@ -1,13 +1,14 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "slicer/color/texture.h"
 
-#include <OpenImageIO/filesystem.h>
-#include <OpenImageIO/imageio.h>
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <cmath>
-#include <memory>
+#include <utility>
+
+#include "slicer/base/error.h"
+#include "slicer/images/read_image.h"
 
 namespace binderjet {
 namespace {
@@ -30,88 +31,6 @@ int texel(float place, float low, float high, Tiling tiling, int size) {
   return static_cast<int>(std::clamp(scaled, 0.0F, static_cast<float>(size - 1)));
 }
 
-// An image open for reading, from a file or from bytes.
-struct Open {
-  std::unique_ptr<OIIO::Filesystem::IOMemReader> memory;
-  std::unique_ptr<OIIO::ImageInput> input;
-};
-
-const char* format_of(const std::vector<std::byte>& bytes) {
-  const auto starts = [&](std::initializer_list<unsigned> magic) {
-    std::size_t i = 0;
-    return bytes.size() >= magic.size() && std::all_of(magic.begin(), magic.end(), [&](unsigned m) {
-             return std::to_integer<unsigned>(bytes[i++]) == m;
-           });
-  };
-  if (starts({0xff, 0xd8})) return "image.jpg";
-  if (starts({'R', 'I', 'F', 'F'})) return "image.webp";
-  if (starts({'B', 'M'})) return "image.bmp";
-  return "image.png";
-}
-
-Open open_image(const TextureSource& source) {
-  Open open;
-  OIIO::ImageSpec config;
-  config.attribute("oiio:UnassociatedAlpha", 1);  // a transparent texel keeps its color
-  if (source.path.empty()) {
-    // Not ImageInput::open, which looks for a file of that name even so.
-    const char* name = format_of(source.bytes);
-    open.memory = std::make_unique<OIIO::Filesystem::IOMemReader>(
-        const_cast<std::byte*>(source.bytes.data()), source.bytes.size());
-    open.input = OIIO::ImageInput::create(name, false, nullptr, open.memory.get());
-    OIIO::ImageSpec spec;
-    const bool good = open.input != nullptr && open.input->set_ioproxy(open.memory.get()) &&
-                      open.input->open(name, spec, config);
-    if (!good) open.input.reset();
-  } else {
-    open.input = OIIO::ImageInput::open(source.path, &config);
-  }
-  return open;
-}
-
-// Averages factor x factor texels into one, a few rows of the file at a time.
-std::optional<Texture> decode(OIIO::ImageInput& input, int factor) {
-  const OIIO::ImageSpec spec = input.spec();
-  const int channels = spec.nchannels >= 3 ? 3 : 1;
-  Texture texture;
-  texture.width = std::max(1, spec.width / factor);
-  texture.height = std::max(1, spec.height / factor);
-  const int rows_at_once = spec.tile_width > 0 ? spec.height : factor;
-  const auto stride = static_cast<std::size_t>(spec.width) * static_cast<std::size_t>(channels);
-  std::vector<std::uint8_t> rows(stride * static_cast<std::size_t>(rows_at_once));
-  texture.rgb.resize(3 * static_cast<std::size_t>(texture.width) *
-                     static_cast<std::size_t>(texture.height));
-  std::uint8_t* out = texture.rgb.data();
-  for (int y = 0; y < texture.height; ++y) {
-    const int first = y * factor;
-    const int last = std::min(spec.height, first + factor);
-    if (spec.tile_width > 0) {
-      if (y == 0 && !input.read_image(0, 0, 0, channels, OIIO::TypeDesc::UINT8, rows.data())) {
-        return std::nullopt;
-      }
-    } else if (!input.read_scanlines(0, 0, spec.y + first, spec.y + last, 0, 0, channels,
-                                     OIIO::TypeDesc::UINT8, rows.data())) {
-      return std::nullopt;
-    }
-    const std::size_t base = spec.tile_width > 0 ? static_cast<std::size_t>(first) : 0;
-    for (int x = 0; x < texture.width; ++x) {
-      const int x_last = std::min(spec.width, (x + 1) * factor);
-      for (int c = 0; c < 3; ++c) {
-        unsigned sum = 0;
-        for (int j = 0; j < last - first; ++j) {
-          for (int i = x * factor; i < x_last; ++i) {
-            sum += rows[(base + static_cast<std::size_t>(j)) * stride +
-                        static_cast<std::size_t>(i * channels + (channels == 3 ? c : 0))];
-          }
-        }
-        const auto count = static_cast<unsigned>((last - first) * (x_last - x * factor));
-        *out++ = static_cast<std::uint8_t>((sum + count / 2) / count);
-      }
-    }
-  }
-  return texture;
-}
-
 }  // namespace
 
 Rgb Texture::at(const Uv& uv, const std::array<Uv, 3>& corners) const {
@@ -128,18 +47,19 @@ Rgb Texture::at(const Uv& uv, const std::array<Uv, 3>& corners) const {
 std::vector<std::optional<Texture>> load_textures(const std::vector<TextureSource>& sources,
                                                   std::vector<std::string>& warnings,
                                                   std::int64_t texels) {
-  constexpr std::int64_t kMost = std::int64_t{1} << 31;
-  std::vector<Open> open;
+  const auto image_of = [](const TextureSource& source) {
+    return ImageSource{source.path, source.bytes, source.name};
+  };
   std::int64_t total = 0;
+  std::vector<bool> good;
   for (const TextureSource& source : sources) {
-    open.push_back(open_image(source));
-    if (open.back().input == nullptr) continue;
-    const OIIO::ImageSpec& spec = open.back().input->spec();
-    const std::int64_t area = std::int64_t{spec.width} * spec.height;
-    if (spec.width < 1 || spec.height < 1 || area > kMost) {
-      open.back().input.reset();
-    } else {
-      total += area;
+    try {
+      const Image size = read_image_size(image_of(source));
+      total += std::int64_t{size.width} * size.height;
+      good.push_back(true);
+    } catch (const Error& error) {
+      if (error.kind() != ErrorKind::kBadInput) throw;
+      good.push_back(false);
     }
   }
   const int factor = std::max(1, static_cast<int>(std::ceil(std::sqrt(
@@ -147,12 +67,16 @@ std::vector<std::optional<Texture>> load_textures(const std::vector<TextureSourc
   std::vector<std::optional<Texture>> textures;
   for (std::size_t i = 0; i < sources.size(); ++i) {
     std::optional<Texture> texture;
-    if (open[i].input != nullptr) texture = decode(*open[i].input, factor);
-    open[i].input.reset();
-    if (texture) {
-      texture->tiling = sources[i].tiling;
-    } else {
-      OIIO::geterror();  // forgets it: the words of the library name no remedy
+    try {
+      if (good[i]) {
+        Image image = read_color_image(image_of(sources[i]), factor);
+        texture = Texture{image.width, image.height, std::move(image.samples), sources[i].tiling};
+      }
+    } catch (const Error& error) {
+      if (error.kind() != ErrorKind::kBadInput) throw;
+    }
+    if (!texture) {
+      // The words of the decoder name no remedy.
       warnings.push_back(fmt::format("its image \"{}\" cannot be decoded; painted in neutral gray",
                                      sources[i].name));
     }

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Slice stacks in: stack.json checked, images through OpenImageIO.
-#include <OpenImageIO/imageio.h>
+// Slice stacks in: stack.json checked, images of any format.
 #include <fmt/printf.h>
 
 #include <filesystem>
@@ -9,6 +8,8 @@
 
 #include "slicer/base/error.h"
 #include "slicer/base/strict_json.h"
+#include "slicer/images/read_image.h"
+#include "slicer/stack/gray_png.h"
 #include "slicer/stack/slice_stack.h"
 
 namespace binderjet {
@@ -94,20 +95,14 @@ std::string StackReader::image_path(int index) const {
 
 std::vector<std::uint8_t> StackReader::read_gray(int index) const {
   const std::string path = image_path(index);
-  const auto image = OIIO::ImageInput::open(path);
-  if (!image) throw Error(ErrorKind::kBadInput, path, OIIO::geterror());
-  const OIIO::ImageSpec& spec = image->spec();
-  if (spec.width != info_.size[0] || spec.height != info_.size[1]) {
+  if (auto gray = read_gray_png(path, info_.size[0], info_.size[1])) return std::move(*gray);
+  Image image = read_gray_image({path, {}, path});
+  if (image.width != info_.size[0] || image.height != info_.size[1]) {
     throw Error(ErrorKind::kBadInput, path,
-                fmt::format("is {} x {} pixels, stack.json says {} x {}", spec.width, spec.height,
+                fmt::format("is {} x {} pixels, stack.json says {} x {}", image.width, image.height,
                             info_.size[0], info_.size[1]));
   }
-  std::vector<std::uint8_t> gray(static_cast<std::size_t>(spec.width) *
-                                 static_cast<std::size_t>(spec.height));
-  if (!image->read_image(0, 0, 0, 1, OIIO::TypeDesc::UINT8, gray.data())) {
-    throw Error(ErrorKind::kBadInput, path, image->geterror());
-  }
-  return gray;
+  return std::move(image.samples);
 }
 
 RunLayer StackReader::read(int index) const {

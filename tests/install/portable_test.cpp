@@ -36,12 +36,31 @@ class Portable : public testing::Test {
   }
   std::string said() const { return place_.text("said"); }
 
-  // Every verb of a small job, in tmp/.
-  void run_job(const std::string& program, const std::string& profiles) const {
+  // Every verb of a small job, in tmp/, which lies at `tmp`.
+  void run_job(const std::string& program, const std::string& profiles,
+               const std::string& tmp) const {
+    std::ofstream(tmp + "/part.ppm") << "P3 2 1 255  255 0 0  0 0 255";
+    std::ofstream(tmp + "/part.mtl") << "newmtl skin\nmap_Kd part.ppm\n";
+    std::ofstream(tmp + "/part.obj") << R"(mtllib part.mtl
+v 0 0 0
+v 4 0 0
+v 0 4 0
+v 0 0 4
+vt 0 0
+vt 1 0
+vt 0 1
+usemtl skin
+f 1/1 3/3 2/2
+f 1/1 2/2 4/3
+f 1/1 4/3 3/2
+f 2/1 3/2 4/3
+)";
     for (const char* words :
          {"coupon --kind slots -o tmp/part.stl",
           "slice tmp/part.stl -p PROFILES/z450.toml --scale 0.2 --enhance paper -o tmp/job.bjob",
           "export tmp/job.bjob -o tmp/masks", "export tmp/job.bjob --html tmp/page.html",
+          // With a picture, which a second program reads.
+          "slice tmp/part.obj -p PROFILES/z450.toml --enhance none -o tmp/picture.bjob",
           "simulate tmp/job.bjob -p PROFILES/z450.toml -o tmp/printed",
           "score tmp/job.bjob --target tmp/part.stl",
           "print tmp/job.bjob --to file:tmp/sent.bjob"}) {
@@ -64,15 +83,17 @@ TEST_F(Portable, NeedsNothingOfTheSystemAndSaysWhoseItIs) {
   EXPECT_THAT(said(), HasSubstr(folder_ + "/share/binderjet/profiles/z450.toml"));
 
   // No library is the system's.
-  ASSERT_EQ(run("cd '" + folder_ + "' && " + loader_ +
-                " --inhibit-cache --library-path lib --list lib/binderjet"),
-            0)
-      << said();
-  std::istringstream libraries(said());
   int found = 0;
-  for (std::string line; std::getline(libraries, line); ++found) {
-    EXPECT_TRUE(line.find("linux-vdso") != line.npos || line.find("lib/") != line.npos) << line;
-    EXPECT_EQ(line.find(" /"), line.npos) << line;
+  for (const char* program : {"lib/binderjet", "lib/binderjet-read"}) {
+    ASSERT_EQ(run("cd '" + folder_ + "' && " + loader_ +
+                  " --inhibit-cache --library-path lib --list " + program),
+              0)
+        << said();
+    std::istringstream libraries(said());
+    for (std::string line; std::getline(libraries, line); ++found) {
+      EXPECT_TRUE(line.find("linux-vdso") != line.npos || line.find("lib/") != line.npos) << line;
+      EXPECT_EQ(line.find(" /"), line.npos) << line;
+    }
   }
   EXPECT_GT(found, 50);
 
@@ -86,20 +107,26 @@ TEST_F(Portable, NeedsNothingOfTheSystemAndSaysWhoseItIs) {
   }
   EXPECT_GT(packages, 40);
 
-  // Where there is nothing but the folder and /tmp, nobody gets the same bytes as here.
+  // Where there is nothing but the folder, /tmp and a shell, nobody gets the same bytes as here.
   if (geteuid() != 0) GTEST_SKIP() << "the rest needs the right to change the root";
   fs::rename(folder_, root_ + "/it");
   fs::create_directory(root_ + "/tmp");
   fs::permissions(root_ + "/tmp", fs::perms::all);
   fs::permissions(root_ + "/..", fs::perms(0755));
-  run_job("env -i /usr/sbin/chroot --userspec=65534:65534 '" + root_ + "' /it/" + loader_ +
-              " --library-path /it/lib /it/lib/binderjet",
-          "/it/share/binderjet/profiles");
+  fs::create_directory(root_ + "/bin");
+  fs::copy("/bin/busybox", root_ + "/bin/sh");
+  for (const char* tool : {"readlink", "dirname", "basename"}) {
+    fs::create_symlink("sh", root_ + "/bin/" + tool);
+  }
+  run_job(
+      "env -i PATH=/bin /usr/sbin/chroot --userspec=65534:65534 '" + root_ + "' /it/bin/binderjet",
+      "/it/share/binderjet/profiles", root_ + "/tmp");
   fs::create_directories(place_ / "here/tmp");
   run_job("cd '" + place_ / "here" + "' && '" BINDERJET_PROGRAM "'",
-          BINDERJET_SOURCE_DIR "/profiles");
+          BINDERJET_SOURCE_DIR "/profiles", place_ / "here/tmp");
   EXPECT_EQ(run("diff -r '" + root_ + "/tmp' '" + place_ / "here/tmp" + "'"), 0) << said();
   EXPECT_TRUE(fs::exists(place_ / "here/tmp/masks/mask_000001.png"));
+  EXPECT_EQ(run("strings -n 2 '" + place_ / "here/tmp/picture.bjob" + "' | grep -q color"), 0);
 }
 
 }  // namespace

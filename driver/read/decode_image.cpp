@@ -1,0 +1,122 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "driver/read/decode_image.h"
+
+#include <OpenImageIO/filesystem.h>
+#include <OpenImageIO/imageio.h>
+
+#include <algorithm>
+#include <initializer_list>
+#include <memory>
+#include <string>
+
+namespace binderjet {
+namespace {
+
+// An image open for reading, from a file or from bytes.
+struct Open {
+  std::unique_ptr<OIIO::Filesystem::IOMemReader> memory;
+  std::unique_ptr<OIIO::ImageInput> input;
+};
+
+const char* format_of(std::span<const std::byte> bytes) {
+  const auto starts = [&](std::initializer_list<unsigned> magic) {
+    std::size_t i = 0;
+    return bytes.size() >= magic.size() && std::all_of(magic.begin(), magic.end(), [&](unsigned m) {
+             return std::to_integer<unsigned>(bytes[i++]) == m;
+           });
+  };
+  if (starts({0xff, 0xd8})) return "image.jpg";
+  if (starts({'R', 'I', 'F', 'F'})) return "image.webp";
+  if (starts({'B', 'M'})) return "image.bmp";
+  return "image.png";
+}
+
+Open open_image(const ImageRequest& request, std::span<const std::byte> content) {
+  Open open;
+  OIIO::ImageSpec config;
+  // A transparent texel keeps its color.
+  if (request.wish != ImageWish::kGray) config.attribute("oiio:UnassociatedAlpha", 1);
+  if (request.is_path != 0) {
+    const std::string path(reinterpret_cast<const char*>(content.data()), content.size());
+    open.input = OIIO::ImageInput::open(path, &config);
+  } else {
+    // Not ImageInput::open, which looks for a file of that name even so.
+    const char* name = format_of(content);
+    open.memory = std::make_unique<OIIO::Filesystem::IOMemReader>(
+        const_cast<std::byte*>(content.data()), content.size());
+    open.input = OIIO::ImageInput::create(name, false, nullptr, open.memory.get());
+    OIIO::ImageSpec spec;
+    const bool good = open.input != nullptr && open.input->set_ioproxy(open.memory.get()) &&
+                      open.input->open(name, spec, config);
+    if (!good) open.input.reset();
+  }
+  if (open.input == nullptr) throw std::runtime_error(OIIO::geterror());
+  return open;
+}
+
+DecodedImage decode_gray(OIIO::ImageInput& input) {
+  const OIIO::ImageSpec& spec = input.spec();
+  DecodedImage image{spec.width, spec.height, {}};
+  image.samples.resize(static_cast<std::size_t>(spec.width) *
+                       static_cast<std::size_t>(spec.height));
+  if (!input.read_image(0, 0, 0, 1, OIIO::TypeDesc::UINT8, image.samples.data())) {
+    throw std::runtime_error(input.geterror());
+  }
+  return image;
+}
+
+// Averages factor x factor pixels into one, a few rows of the file at a time.
+DecodedImage decode_color(OIIO::ImageInput& input, int factor) {
+  const OIIO::ImageSpec spec = input.spec();
+  const int channels = spec.nchannels >= 3 ? 3 : 1;
+  DecodedImage image{std::max(1, spec.width / factor), std::max(1, spec.height / factor), {}};
+  const int rows_at_once = spec.tile_width > 0 ? spec.height : factor;
+  const auto stride = static_cast<std::size_t>(spec.width) * static_cast<std::size_t>(channels);
+  std::vector<std::uint8_t> rows(stride * static_cast<std::size_t>(rows_at_once));
+  image.samples.resize(3 * static_cast<std::size_t>(image.width) *
+                       static_cast<std::size_t>(image.height));
+  std::byte* out = image.samples.data();
+  for (int y = 0; y < image.height; ++y) {
+    const int first = y * factor;
+    const int last = std::min(spec.height, first + factor);
+    if (spec.tile_width > 0) {
+      if (y == 0 && !input.read_image(0, 0, 0, channels, OIIO::TypeDesc::UINT8, rows.data())) {
+        throw std::runtime_error(input.geterror());
+      }
+    } else if (!input.read_scanlines(0, 0, spec.y + first, spec.y + last, 0, 0, channels,
+                                     OIIO::TypeDesc::UINT8, rows.data())) {
+      throw std::runtime_error(input.geterror());
+    }
+    const std::size_t base = spec.tile_width > 0 ? static_cast<std::size_t>(first) : 0;
+    for (int x = 0; x < image.width; ++x) {
+      const int x_last = std::min(spec.width, (x + 1) * factor);
+      for (int c = 0; c < 3; ++c) {
+        unsigned sum = 0;
+        for (int j = 0; j < last - first; ++j) {
+          for (int i = x * factor; i < x_last; ++i) {
+            sum += rows[(base + static_cast<std::size_t>(j)) * stride +
+                        static_cast<std::size_t>(i * channels + (channels == 3 ? c : 0))];
+          }
+        }
+        const auto count = static_cast<unsigned>((last - first) * (x_last - x * factor));
+        *out++ = static_cast<std::byte>((sum + count / 2) / count);
+      }
+    }
+  }
+  return image;
+}
+
+}  // namespace
+
+DecodedImage decode_image(const ImageRequest& request, std::span<const std::byte> content) {
+  const Open open = open_image(request, content);
+  const OIIO::ImageSpec& spec = open.input->spec();
+  if (spec.width < 1 || spec.height < 1 || std::int64_t{spec.width} * spec.height > kMostPixels) {
+    throw std::runtime_error("has no pixels, or more than 2^31");
+  }
+  if (request.wish == ImageWish::kSize) return {spec.width, spec.height, {}};
+  if (request.wish == ImageWish::kGray) return decode_gray(*open.input);
+  return decode_color(*open.input, static_cast<int>(request.factor));
+}
+
+}  // namespace binderjet
