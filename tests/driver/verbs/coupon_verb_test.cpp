@@ -21,23 +21,25 @@ std::vector<std::string> profiles(const Workplace& here) {
   return names;
 }
 
-TEST(CouponVerb, MakesPartsThatSliceWithoutAWarningForEveryProfile) {
+class CouponOfKind : public testing::TestWithParam<std::string> {};
+
+TEST_P(CouponOfKind, SlicesWithoutAWarningForEveryProfile) {
   const Workplace here;
   const std::vector<std::string> printers = profiles(here);
   EXPECT_GE(printers.size(), 2U);
-  for (const std::string& kind : coupon_kinds()) {
-    const std::string part = here / (kind + ".stl");
-    ASSERT_EQ(here.run({"coupon", "--kind", kind, "-o", part}).status, 0) << kind;
-    for (const std::string& printer : printers) {
-      // What is said of the model is said of all of it, and of masks these layers are like the
-      // rest.
-      const Ran ran =
-          here.run({"slice", part, "-p", printer, "--layers", "16:22", "-o", here / "a.bjob"});
-      EXPECT_EQ(ran.status, 0) << ran.err;
-      EXPECT_THAT(ran.err, Not(HasSubstr("warning"))) << kind << " on " << printer;
-    }
+  const std::string part = here / "part.stl";
+  ASSERT_EQ(here.run({"coupon", "--kind", GetParam(), "-o", part}).status, 0);
+  for (const std::string& printer : printers) {
+    // What is said of the model is said of all of it, and of masks these layers are like the rest.
+    const Ran ran =
+        here.run({"slice", part, "-p", printer, "--layers", "16:22", "-o", here / "a.bjob"});
+    EXPECT_EQ(ran.status, 0) << ran.err;
+    EXPECT_THAT(ran.err, Not(HasSubstr("warning"))) << "on " << printer;
   }
 }
+
+INSTANTIATE_TEST_SUITE_P(Kinds, CouponOfKind, testing::ValuesIn(coupon_kinds()),
+                         [](const auto& kind) { return kind.param; });
 
 }  // namespace
 }  // namespace binderjet
