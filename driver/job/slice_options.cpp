@@ -38,6 +38,17 @@ std::vector<std::optional<Number>> split(const std::string& option, const std::s
   return values;
 }
 
+// Unlike CLI::PositiveNumber it refuses nan, and what no part has.
+CLI::Validator above_zero() {
+  constexpr double kMost = 1e9;
+  return {[](const std::string& text) {
+            double value = 0;
+            const bool good = CLI::detail::lexical_cast(text, value) && value > 0 && value <= kMost;
+            return good ? std::string() : "\"" + text + "\" is no number above 0";
+          },
+          "POSITIVE", "above_zero"};
+}
+
 }  // namespace
 
 std::optional<double> unit_of(const SliceOptions& options) {
@@ -83,11 +94,11 @@ void add_slice_options(CLI::App& verb, SliceOptions& options) {
                 "profile's model alone");
   verb.add_option("--layer", options.layer_mm, "layer height in mm, one the printer has");
   CLI::Option* scale = verb.add_option("--scale", options.placement.scale, "scale factor")
-                           ->check(CLI::PositiveNumber)
+                           ->check(above_zero())
                            ->capture_default_str();
   verb.add_option("--size", options.size_mm,
                   "instead: scale each part so that its largest side is so many mm")
-      ->check(CLI::PositiveNumber)
+      ->check(above_zero())
       ->excludes(scale);
   verb.add_option("--units", options.units,
                   "the model's unit: mm, cm, m, um, in, ft (default: what the file says, else mm)");
@@ -99,7 +110,7 @@ void add_slice_options(CLI::App& verb, SliceOptions& options) {
       ->allow_extra_args(false);
   verb.add_option("--wall", options.placement.wall_mm,
                   "give a surface that encloses nothing, as of a scan, a wall this thick, in mm")
-      ->check(CLI::PositiveNumber);
+      ->check(above_zero());
   verb.add_option("--texture", options.texture,
                   "the image for a model whose file has a place in it but names none");
   verb.add_flag("--color-enhance", options.color_enhance,

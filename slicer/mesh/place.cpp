@@ -15,6 +15,7 @@
 namespace binderjet {
 namespace {
 
+constexpr double kFarthest = 1e6;    // mm; what is told of a place is an int in pixels
 constexpr double kTolerance = 1e-6;  // mm; rounding must not push a part off the bed
 
 std::string size_text(const Point& size) {
@@ -85,16 +86,18 @@ class Layout {
   }
 
   bool fits(const Point& size) const {
-    return last_corner(0, size[0]) >= 0 && last_corner(1, size[1]) >= 0 &&
-           size[2] <= bed_.size_mm[2] + kTolerance;
+    for (std::size_t a = 0; a < 3; ++a) {
+      if (!(size[a] <= bed_.size_mm[a] + kTolerance)) return false;
+    }
+    return true;
   }
 
-  // The last pixel corner of an axis where a part of that size still ends on the bed; below 0 if
-  // the part is larger. Of the bed, not of its pixels, the last of which may reach over the edge.
+  // The last pixel corner of an axis where a part that fits still ends on the bed. Of the bed, not
+  // of its pixels, the last of which may reach over the edge.
   int last_corner(int axis, double size_mm) const {
     const auto a = static_cast<std::size_t>(axis);
     return static_cast<int>(
-        std::floor((bed_.size_mm[a] - size_mm + kTolerance) / bed_.pitch_mm[a]));
+        std::max(0.0, std::floor((bed_.size_mm[a] - size_mm + kTolerance) / bed_.pitch_mm[a])));
   }
 
   bool on_bed(int x, int y, const Point& size) const {
@@ -135,6 +138,13 @@ class Layout {
   BedSpot place_fixed(std::size_t index, const std::array<double, 2>& at_mm) {
     const BedRequest& part = parts_[index];
     Rectangle place = rectangle(part);
+    for (const double mm : at_mm) {
+      if (!(std::abs(mm) <= kFarthest)) {
+        throw Error(ErrorKind::kUsage, part.where,
+                    fmt::format("cannot stand at {:g},{:g}; --at takes millimeters of the bed",
+                                at_mm[0], at_mm[1]));
+      }
+    }
     place.x = static_cast<int>(std::lround(at_mm[0] / bed_.pitch_mm[0]));
     place.y = static_cast<int>(std::lround(at_mm[1] / bed_.pitch_mm[1]));
     if (!on_bed(place.x, place.y, part.size_mm)) {
@@ -290,6 +300,12 @@ Point transform_part(Mesh& mesh, const Placement& placement, const std::string& 
     throw Error(
         ErrorKind::kUsage, where,
         fmt::format("cannot be scaled by {:g}; --scale takes a number above 0", placement.scale));
+  }
+  for (const double degrees : placement.rotate_deg) {
+    if (!std::isfinite(degrees)) {
+      throw Error(ErrorKind::kUsage, where,
+                  fmt::format("cannot be turned by {:g}; --rotate takes degrees", degrees));
+    }
   }
   transform_mesh(mesh, factor, placement.rotate_deg);
   const Point corner = bounding_box(mesh).min;
