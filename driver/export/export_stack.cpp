@@ -25,7 +25,8 @@ StackInfo mask_info(const MaskSource& job, bool full_bed) {
 }
 
 std::vector<std::byte> mask_bits(const MaskSource& job, const StackInfo& frame, int index) {
-  if (frame.size == job.size_px) return job.packed(index);
+  const StackInfo box = job.stack_info(StackKind::kMask);
+  if (frame.size == box.size && frame.origin_mm == box.origin_mm) return job.packed(index);
   const auto& corner = job.header->box.bed_px;
   return pack(window(job.read(index), -corner[0], -corner[1], frame.size[0], frame.size[1]));
 }

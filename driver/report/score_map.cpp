@@ -60,9 +60,9 @@ void ScoreMap::write(int index, const LayerScore& layer) const {
       paint(layer.missing.fused[s].row(y), y, kFused);
     }
   }
-  stack_.write_file(stack_.image_name(index),
-                    encode_indexed_png(pixels, width, height, kPalette,
-                                       {stack_.info().pitch_mm[0], stack_.info().pitch_mm[1]}));
+  stack_.write_encoded(index,
+                       encode_indexed_png(pixels, width, height, kPalette,
+                                          {stack_.info().pitch_mm[0], stack_.info().pitch_mm[1]}));
 }
 
 void ScoreMap::add(const std::vector<Fault>& faults) {
@@ -88,7 +88,7 @@ void ScoreMap::finish(const JobScore& score) {
     text += (i == 0 ? "\n" : ",\n") + located(word(kind), region, origin_mm_, grid_).dump();
   }
   text += "\n]}\n";
-  stack_.write_file("features.json", std::as_bytes(std::span(text)));
+  stack_.add_file("features.json", std::as_bytes(std::span(text)));
   stack_.finish();
 }
 

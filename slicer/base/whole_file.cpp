@@ -40,14 +40,34 @@ WholeFile::~WholeFile() {
 }
 
 void WholeFile::keep() {
+  sync_file(part_);
   if (std::rename(part_.c_str(), path_.c_str()) != 0) fail_to_write(path_);
   part_.clear();
+  sync_folder_of(path_);
 }
 
 void fail_to_write(const std::string& path) {
   const bool no_room = errno == ENOSPC || errno == EDQUOT || errno == EFBIG;
   throw Error(no_room ? ErrorKind::kNoRoom : ErrorKind::kBadInput, path,
               std::string("cannot write: ") + std::strerror(errno));
+}
+
+void sync_file(const std::string& path) {
+  const int fd = ::open(path.c_str(), O_RDONLY | O_CLOEXEC);
+  const bool good = fd >= 0 && ::fsync(fd) == 0;
+  const int why = errno;
+  if (fd >= 0) ::close(fd);
+  if (good || why == EINVAL) return;
+  errno = why;
+  fail_to_write(path);
+}
+
+void sync_folder_of(const std::string& path) {
+  const fs::path folder = fs::path(path).parent_path();
+  const int fd = ::open(folder.empty() ? "." : folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
+  if (fd < 0) return;
+  ::fsync(fd);
+  ::close(fd);
 }
 
 void make_folders(const std::string& path) {

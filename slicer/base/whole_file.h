@@ -20,6 +20,7 @@ class WholeFile {
   // Where to write; no other process writes there.
   const std::string& part() const { return part_; }
   const std::string& path() const { return path_; }
+  // Once the disk has it.
   void keep();
 
  private:
@@ -29,6 +30,11 @@ class WholeFile {
 
 // errno as the Error of a file that cannot be written: kNoRoom if the disk is full, else kBadInput.
 [[noreturn]] void fail_to_write(const std::string& path);
+
+// Waits until the disk has what was written: a file, or a folder's names; the folder that holds
+// `path`, after its name has changed. A file system that cannot do the last is left to its ways.
+void sync_file(const std::string& path);
+void sync_folder_of(const std::string& path);
 
 // Makes a folder and its parents, unless they are there; fails as files do.
 void make_folders(const std::string& path);

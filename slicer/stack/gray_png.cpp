@@ -7,6 +7,8 @@
 #include <memory>
 #include <stdexcept>
 
+#include "slicer/images/message.h"
+
 namespace binderjet {
 namespace {
 
@@ -49,7 +51,8 @@ std::optional<std::vector<std::uint8_t>> read_gray_png(const std::string& path, 
     png_read_info(reader.png, reader.info);
     const auto columns = static_cast<std::size_t>(width);
     const auto rows = static_cast<std::size_t>(height);
-    if (!is_plain_gray(reader) || png_get_image_width(reader.png, reader.info) != columns ||
+    if (!is_plain_gray(reader) || std::int64_t{width} * height > kMostPixels ||
+        png_get_image_width(reader.png, reader.info) != columns ||
         png_get_image_height(reader.png, reader.info) != rows) {
       return std::nullopt;
     }

@@ -7,6 +7,7 @@
 #include <nlohmann/json.hpp>
 
 #include "slicer/base/error.h"
+#include "slicer/base/plain_file.h"
 #include "slicer/base/strict_json.h"
 #include "slicer/images/read_image.h"
 #include "slicer/stack/gray_png.h"
@@ -37,7 +38,11 @@ StackKind kind_of(const std::string& name, const std::string& where) {
               "kind \"" + name + "\" is none of mask, target, printed, measured, color");
 }
 
-StackInfo parse(const std::string& path) {
+}  // namespace
+
+StackInfo read_stack_info(const std::string& folder) {
+  const std::string path = folder + "/stack.json";
+  demand_plain_file(path);
   std::ifstream file(path);
   if (!file) throw Error(ErrorKind::kBadInput, path, "is not there; is this a slice stack?");
   try {
@@ -52,6 +57,12 @@ StackInfo parse(const std::string& path) {
     json.at("origin_mm").get_to(info.origin_mm);
     json.at("files").get_to(info.files);
     get_int(json.at("first"), info.first, path);
+    if (json.contains("also")) json.at("also").get_to(info.also);
+    for (const std::string& name : info.also) {
+      if (name.empty() || name == "." || name == ".." || name.find('/') != std::string::npos) {
+        throw Error(ErrorKind::kBadInput, path, "\"also\" names files of the folder, no others");
+      }
+    }
     info.threshold_stated = json.contains("threshold");
     if (info.threshold_stated) get_int(json.at("threshold"), info.threshold, path);
     for (std::size_t axis = 0; axis < 3; ++axis) {
@@ -76,12 +87,11 @@ StackInfo parse(const std::string& path) {
   }
 }
 
-}  // namespace
-
 StackReader::StackReader(const std::string& folder)
-    : folder_(folder), info_(parse(folder + "/stack.json")) {
+    : folder_(folder), info_(read_stack_info(folder)) {
   for (int index = 0; index < info_.size[2]; ++index) {
     std::error_code error;
+    demand_plain_file(image_path(index));
     if (!std::filesystem::exists(image_path(index), error)) {
       throw Error(ErrorKind::kBadInput, image_path(index),
                   "is missing from the stack; copy the whole folder");

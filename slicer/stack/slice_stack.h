@@ -6,7 +6,7 @@
 //
 // Masks and color are at the printer grid. A printed stack is at the voxel pitch in x and y with
 // one image per layer, since the slices of a layer are equal; a target has every slice. Row 0 of an
-// image is the smallest y.
+// image is the smallest y. "also": ["features.json"] names files that are part of it besides.
 #pragma once
 
 #include <array>
@@ -32,14 +32,19 @@ struct StackInfo {
   int first = 0;                  // the number of the first image
   int threshold = 128;            // an 8-bit sample is solid from here on
   bool threshold_stated = false;  // in stack.json, rather than by default
+  std::vector<std::string> also;  // files besides the images, of the same folder
 };
+
+// What stack.json says. Error{kBadInput} if it is not there or not one of ours.
+StackInfo read_stack_info(const std::string& folder);
 
 // Writes a stack under a temporary name beside `folder`; finish() gives it its name. A stack that
 // is not finished vanishes, and what stood at `folder` before stays.
 class StackWriter {
  public:
   // `folder` may be new, empty, or an earlier slice stack, which finish() replaces; anything else
-  // there is an Error, for it may be somebody's work.
+  // there, or a file within it that its stack.json does not name, is an Error{kUsage} that names
+  // it, for it may be somebody's work.
   StackWriter(const std::string& folder, StackInfo info);
   ~StackWriter();
   StackWriter(const StackWriter&) = delete;
@@ -48,19 +53,22 @@ class StackWriter {
   // Image `index` (0 is `first`), of the stack's size. Threads may write different images at once.
   void write(int index, const RunLayer& layer) const;
   void write_packed(int index, std::span<const std::byte> bits) const;
-  // A file of the folder as it is: an image that somebody else encoded, or what goes with them.
-  void write_file(const std::string& name, std::span<const std::byte> bytes) const;
-  std::string image_name(int index) const;
+  void write_encoded(int index, std::span<const std::byte> file) const;
   // 24-bit rows of red, green, blue.
   void write_rgb(int index, std::span<const std::byte> rgb) const;
-  // Writes what is left; then only the folder's name is missing.
+  // A file beside the images, which stack.json names.
+  void add_file(const std::string& name, std::span<const std::byte> bytes);
+  // Writes what is left and waits until the disk has all of it; then only the name is missing.
   void complete();
-  // Gives the folder its name, complete() before that if need be.
+  // Gives the folder its name, complete() before that if need be: in one step, in which an earlier
+  // stack steps aside, so that one of the two stands there whatever happens.
   void finish();
 
   const StackInfo& info() const { return info_; }
 
  private:
+  void write_file(const std::string& name, std::span<const std::byte> bytes) const;
+
   std::string folder_;
   std::string part_;  // the temporary name; empty once finished
   bool complete_ = false;
