@@ -1,13 +1,14 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "driver/base/console.h"
 
-#include <fmt/core.h>
 #include <unistd.h>
 
 #include <CLI/CLI.hpp>
 #include <nlohmann/json.hpp>
 
+#include "driver/base/json_text.h"
 #include "driver/base/progress_line.h"
+#include "driver/base/said.h"
 
 namespace binderjet {
 
@@ -16,9 +17,9 @@ Console::Console() : line_(std::make_shared<ProgressLine>()) {}
 void Console::result(const nlohmann::ordered_json& object, const std::string& text) const {
   line_->clear();
   if (json) {
-    fmt::print("{}\n", object.dump());
+    say_result(to_json_text(object));
   } else if (!quiet && !text.empty()) {
-    fmt::print("{}\n", text);
+    say_result(text);
   }
 }
 

@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "slicer/base/error.h"
+#include "slicer/base/plain_file.h"
 #include "slicer/base/whole_file.h"
 
 namespace binderjet {
@@ -18,6 +19,7 @@ namespace {
 
 template <class Take>
 void for_each_piece(const std::string& path, Take take) {
+  demand_plain_file(path);
   std::unique_ptr<std::FILE, int (*)(std::FILE*)> file(std::fopen(path.c_str(), "rb"), std::fclose);
   std::vector<char> piece(1 << 20);
   while (file) {

@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Ctrl-C and SIGTERM: remembered when they come, answered where work can end.
+// Ctrl-C, SIGTERM and SIGHUP: remembered when they come, answered where work can end.
 #pragma once
 
 namespace binderjet {
 
-// From here on Ctrl-C and SIGTERM are answered by check_interrupt() instead of by sudden death.
+// From here on these signals are answered by check_interrupt() instead of by sudden death, which a
+// second SIGINT or SIGTERM is. Calls that wait fail by EINTR.
 void catch_interrupts();
 // Whether a signal came.
 bool interrupted();

@@ -10,6 +10,8 @@
 #include <cstdlib>
 
 #include "driver/base/interrupt.h"
+#include "driver/base/said.h"
+#include "slicer/base/byte_text.h"
 
 namespace binderjet {
 namespace {
@@ -91,7 +93,7 @@ void ProgressLine::configure(bool paints, bool talks) {
 void ProgressLine::say(const std::string& text) {
   const std::lock_guard lock(mutex_);
   erase();
-  fmt::print(stderr, "{}\n", text);
+  say_line(text);
 }
 
 void ProgressLine::clear() {
@@ -143,7 +145,7 @@ void ProgressLine::paint() {
   progress.before = stage->before();
   progress.seconds = std::chrono::duration<double>(Clock::now() - at).count();
   // One write, or what others write could come between.
-  const std::string line = "\r\033[K" + text_of(progress, columns_of_terminal());
+  const std::string line = "\r\033[K" + visible_line(text_of(progress, columns_of_terminal()));
   std::fwrite(line.data(), 1, line.size(), stderr);
   std::fflush(stderr);
   painted_ = true;

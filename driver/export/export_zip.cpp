@@ -7,6 +7,7 @@
 #include <memory>
 #include <nlohmann/json.hpp>
 
+#include "driver/base/json_text.h"
 #include "driver/base/layer_blocks.h"
 #include "driver/export/export_stack.h"
 #include "slicer/stack/png.h"
@@ -48,7 +49,7 @@ std::string nanodlp_meta() {
                                        {"Program", "binderjet"}, {"Version", BINDERJET_VERSION},
                                        {"OS", "linux"},          {"Arch", "any"},
                                        {"Profile", false}};
-  return meta.dump(1) + "\n";
+  return to_json_text(meta, 1) + "\n";
 }
 
 }  // namespace

@@ -7,6 +7,7 @@
 #include <cctype>
 #include <sstream>
 
+#include "slicer/base/byte_text.h"
 #include "slicer/base/error.h"
 
 namespace binderjet {
@@ -15,17 +16,17 @@ namespace {
 // A TOML basic string.
 std::string quoted(const std::string& text) {
   std::string out = "\"";
-  for (const char c : text) {
+  for (const char c : escape_bytes(text)) {
     if (c == '"' || c == '\\') out += '\\';
-    out += static_cast<unsigned char>(c) < ' ' ? ' ' : c;
+    out += static_cast<unsigned char>(c) < ' ' || c == '\x7f' ? ' ' : c;
   }
   return out + "\"";
 }
 
 std::string one_line(const std::string& text) {
-  std::string out = text;
+  std::string out = escape_bytes(text);
   for (char& c : out) {
-    if (static_cast<unsigned char>(c) < ' ') c = ' ';
+    if (static_cast<unsigned char>(c) < ' ' || c == '\x7f') c = ' ';
   }
   return out;
 }

@@ -7,6 +7,7 @@
 #include <filesystem>
 
 #include "driver/base/files.h"
+#include "driver/base/json_text.h"
 #include "driver/profile/profile.h"
 #include "driver/profile/write_profile.h"
 #include "driver/report/gauge_report.h"
@@ -80,7 +81,7 @@ void calibrate_gauges(const std::string& profile, const std::string& gauges,
   if (!written.empty()) summary.json["profile"] = written;
   summary.json["report"] = "report.html";
   files.push_back({folder + "/report.html", summary.page});
-  files.push_back({folder + "/calibration.json", summary.json.dump(1) + "\n"});
+  files.push_back({folder + "/calibration.json", to_json_text(summary.json, 1) + "\n"});
   write_texts(files);
   console.result(summary.json, summary.text +
                                    (written.empty() ? "" : "\nprofile: " + folder + "/" + written) +

@@ -12,6 +12,7 @@
 
 #include "driver/base/console.h"
 #include "driver/base/files.h"
+#include "driver/base/json_text.h"
 #include "driver/job/mask_source.h"
 #include "driver/job/mesh_scan_to_stack.h"
 #include "driver/job/print_stream.h"
@@ -167,7 +168,7 @@ void run(const CalibrateOptions& options, const Console& console) {
   const std::string title = "Calibration of " + profile.name + " on " + options.job;
   files.push_back({(folder / "report.html").string(), calibration_report(calibration, job, title)});
   const nlohmann::ordered_json json = calibration_json(calibration, written, "report.html");
-  files.push_back({(folder / "calibration.json").string(), json.dump(1) + "\n"});
+  files.push_back({(folder / "calibration.json").string(), to_json_text(json, 1) + "\n"});
   write_texts(files);
   std::string text = summary(calibration);
   if (!written.empty()) text += "\nprofile: " + (folder / written).string();

@@ -11,6 +11,8 @@
 #include "driver/base/console.h"
 #include "driver/profile/profile.h"
 #include "driver/verbs/verbs.h"
+#include "slicer/base/byte_text.h"
+#include "slicer/base/error.h"
 
 namespace binderjet {
 namespace {
@@ -43,11 +45,18 @@ void list_profiles(const Console& console) {
     }
     for (const std::filesystem::path& file : files) {
       if (!names.insert(file.stem().string()).second) continue;
-      const Profile profile = load_profile(file.string());
+      Profile profile;
+      try {
+        profile = load_profile(file.string());
+      } catch (const Error& error) {
+        console.warning(error.what());  // the others are as good as before
+        continue;
+      }
       list.push_back({{"name", file.stem().string()}, {"path", file.string()}});
-      text += fmt::format("{}{:<16} {:g} x {:g} dpi, bed {:g} x {:g} x {:g} mm",
-                          text.empty() ? "" : "\n", file.stem().string(), profile.dpi[0],
-                          profile.dpi[1], profile.bed_mm[0], profile.bed_mm[1], profile.bed_mm[2]);
+      text +=
+          fmt::format("{}{:<16} {:g} x {:g} dpi, bed {:g} x {:g} x {:g} mm",
+                      text.empty() ? "" : "\n", visible_line(file.stem().string()), profile.dpi[0],
+                      profile.dpi[1], profile.bed_mm[0], profile.bed_mm[1], profile.bed_mm[2]);
     }
   }
   console.result({{"profiles", list}}, text);

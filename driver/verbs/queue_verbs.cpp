@@ -15,6 +15,7 @@
 #include "driver/base/transport_errors.h"
 #include "driver/send/send.h"
 #include "driver/verbs/verbs.h"
+#include "slicer/base/byte_text.h"
 #include "slicer/base/error.h"
 #include "transport/open/open_backend.h"
 
@@ -42,8 +43,8 @@ nlohmann::ordered_json to_json(const JobStatus& job) {
 
 std::string to_line(const JobStatus& job) {
   return fmt::format("{:>6}  {:8}  {:>6} of {:<6}  {}{}{}", job.id, job_state_word(job.state),
-                     job.acknowledged, job.layer_count, job.name, job.reason.empty() ? "" : "  ",
-                     job.reason);
+                     job.acknowledged, job.layer_count, visible_line(job.name),
+                     job.reason.empty() ? "" : "  ", visible_line(job.reason));
 }
 
 std::string lines(const std::vector<std::string>& all) {

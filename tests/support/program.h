@@ -48,6 +48,9 @@ class Workplace {
 
   std::string operator/(const std::string& name) const { return (folder_ / name).string(); }
 
+  // By the clock, after which SIGALRM ends what run() starts; 0 is never.
+  unsigned wall_seconds = 0;
+
   // `words` follow the program's name; more than `seconds` of computing or `memory_mb` of address
   // space end it. `meanwhile` is called once it runs.
   Ran run(const std::vector<std::string>& words, unsigned seconds = 600, std::size_t memory_mb = 0,
@@ -59,6 +62,7 @@ class Workplace {
     if (child == 0) {
       std::signal(SIGINT, SIG_DFL);  // which who runs the tests by & has told them to ignore
       limit(RLIMIT_CPU, seconds);
+      alarm(wall_seconds);
       if (memory_mb != 0) limit(RLIMIT_AS, memory_mb << 20);
       std::vector<char*> argv = {const_cast<char*>(BINDERJET_PROGRAM)};
       for (const std::string& word : words) argv.push_back(const_cast<char*>(word.c_str()));

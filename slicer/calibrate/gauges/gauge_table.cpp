@@ -10,6 +10,7 @@
 #include <set>
 
 #include "slicer/base/error.h"
+#include "slicer/base/plain_file.h"
 
 namespace binderjet {
 namespace {
@@ -76,6 +77,7 @@ const std::string& GaugeTable::text(const Row& row, const std::string& column) c
 }
 
 GaugeTable read_gauge_table(const std::string& path) {
+  demand_plain_file(path);
   std::ifstream file(path);
   if (!file) throw Error(ErrorKind::kBadInput, path, "cannot be read");
   GaugeTable table;

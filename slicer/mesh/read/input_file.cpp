@@ -10,6 +10,7 @@
 #include <filesystem>
 
 #include "slicer/base/error.h"
+#include "slicer/base/plain_file.h"
 
 namespace binderjet {
 
@@ -19,6 +20,7 @@ InputFile::InputFile(const std::string& path)
   if (std::filesystem::is_directory(path, problem)) {
     throw Error(ErrorKind::kBadInput, path, "is a folder; name a model file");
   }
+  demand_plain_file(path);
   errno = 0;
   stream_.open(path, std::ios::binary);
   if (!stream_) {
