@@ -1,12 +1,15 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "driver/job/job.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <utility>
 
 #include "driver/base/files.h"
+#include "slicer/base/byte_text.h"
 #include "slicer/base/error.h"
 #include "slicer/base/strict_json.h"
 
@@ -16,19 +19,16 @@ namespace {
 using Json = nlohmann::ordered_json;
 
 Json to_json(const Source& source) {
-  Json json = {{"file", source.file},
-               {"hash", source.hash},
-               {"unit_mm", source.placement.unit_mm},
-               {"scale", source.placement.scale},
-               {"rotate_deg", source.placement.rotate_deg},
-               {"corner_px", source.corner_px}};
+  Json json = {{"file", escape_bytes(source.file)},         {"hash", source.hash},
+               {"unit_mm", source.placement.unit_mm},       {"scale", source.placement.scale},
+               {"rotate_deg", source.placement.rotate_deg}, {"corner_px", source.corner_px}};
   if (source.placement.wall_mm > 0) json["wall_mm"] = source.placement.wall_mm;
   return json;
 }
 
 Source source_of(const Json& json, const std::string& where) {
   Source source;
-  json.at("file").get_to(source.file);
+  source.file = unescape_bytes(json.at("file").get<std::string>());
   json.at("hash").get_to(source.hash);
   json.at("unit_mm").get_to(source.placement.unit_mm);
   json.at("scale").get_to(source.placement.scale);
@@ -46,6 +46,33 @@ Enhancement enhancement_in(const Json& json, const std::string& where) {
                 "has masks of a kind that this program does not know: \"" + text + "\"");
   }
   return *known;
+}
+
+// What a job says of itself is a stranger's word until its numbers make sense.
+void check_ranges(const JobHeader& header, const std::string& where) {
+  const auto demand = [&](const char* name, auto value, double least, double most) {
+    if (value >= least && value <= most) return;
+    throw Error(
+        ErrorKind::kBadInput, where,
+        fmt::format("has a header whose {} is {}, not {:g} to {:g}", name, value, least, most));
+  };
+  constexpr double kMostPixels = 1 << 24;
+  for (const int size : header.box.size_px) demand("size_px", size, 1, kMostPixels);
+  for (const int margin : header.box.margin_px) demand("margin_px", margin, 0, 1 << 16);
+  for (const int place : header.box.bed_px) demand("bed_px", place, -kMostPixels, kMostPixels);
+  for (const double pitch : header.grid.pitch_mm) demand("pitch_mm", pitch, 1e-3, 100);
+  for (const int detail : header.grid.detail_vx) demand("detail_vx", detail, 1, 16);
+  demand("passes", header.passes, 0, 16);
+  demand("number of sources", static_cast<int>(header.sources.size()), 1, 1e6);
+  for (const Source& source : header.sources) {
+    const Placement& placement = source.placement;
+    demand("unit_mm", placement.unit_mm, 1e-9, 1e9);
+    demand("scale", placement.scale, 1e-9, 1e9);
+    demand("wall_mm", placement.wall_mm, 0, 1e6);
+    for (const double degrees : placement.rotate_deg) demand("rotate_deg", degrees, -1e9, 1e9);
+    for (const int corner : source.corner_px)
+      demand("corner_px", corner, -kMostPixels, kMostPixels);
+  }
 }
 
 }  // namespace
@@ -116,9 +143,7 @@ JobHeader parse_job_header(const std::string& text, const std::string& where) {
     for (const Json& source : json.at("sources")) {
       header.sources.push_back(source_of(source, where));
     }
-    for (const int size : header.box.size_px) {
-      if (size < 1 || size > (1 << 24)) throw Error(ErrorKind::kBadInput, where, "has a bad size");
-    }
+    check_ranges(header, where);
     return header;
   } catch (const Json::exception& error) {
     throw Error(ErrorKind::kBadInput, where,

@@ -1,9 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "driver/job/mask_source.h"
 
-#include <fmt/format.h>
-#include <oneapi/tbb/parallel_for.h>
-
 #include <filesystem>
 #include <utility>
 #include <vector>
@@ -36,12 +33,7 @@ class SourceStream : public Stream<RunLayer> {
 
 std::vector<std::byte> read_layer(const JobReader& reader, RecordKind kind, int layer,
                                   std::size_t size) {
-  std::vector<std::byte> bits = value_or_throw(reader.read(kind, layer));
-  if (bits.size() != size) {
-    throw Error(ErrorKind::kBadInput, fmt::format("{}: layer {}", reader.path(), layer),
-                "is not of the size that the job declares");
-  }
-  return bits;
+  return value_or_throw(reader.read(kind, layer, size));
 }
 
 MaskSource open_stack(const std::string& path) {

@@ -25,6 +25,7 @@
 #include "driver/job/slice_plan.h"
 #include "driver/send/whole_job_file.h"
 #include "slicer/base/error.h"
+#include "slicer/base/plain_file.h"
 #include "transport/emulator/emulator_backend.h"
 #include "transport/open/open_backend.h"
 
@@ -45,6 +46,7 @@ std::vector<std::byte> records_of_layer(const JobReader& job, int layer) {
 }
 
 std::string how_to_resume(Backend& backend, const std::string& id, const std::string& uri) {
+  if (id.empty()) return "";
   const auto jobs = backend.status();
   if (!jobs) return "";
   for (const JobStatus& job : *jobs) {
@@ -142,6 +144,7 @@ void send_layers(const Console& console, const std::string& uri, const JobTicket
   std::uint64_t bytes = 0;
   int first = 0;
   std::string warning;
+  bool begun = false;
   try {
     {
       const Stage stage(console.work(), "opening printer");
@@ -151,6 +154,7 @@ void send_layers(const Console& console, const std::string& uri, const JobTicket
         first = value_or_throw(backend->resume(id, ticket));
       }
     }
+    begun = true;
     Stage stage(console.work(), "printing", ticket.layer_count, "layers", first);
     // Nothing is computed where nothing is left to send.
     const auto source = first < ticket.layer_count ? open(first) : nullptr;
@@ -163,6 +167,8 @@ void send_layers(const Console& console, const std::string& uri, const JobTicket
     if (source) warning = source->warning();
     value_or_throw(backend->end());
   } catch (const Error& error) {
+    // Who waited for the spool's lock no longer must not wait for it again to be told.
+    if (!begun && interrupted()) throw;
     backend.reset();  // holds the job
     backend = backend_at(uri);
     throw Error(error.kind(), "",
@@ -266,6 +272,7 @@ std::unique_ptr<Backend> backend_at(const std::string& uri) {
 }
 
 bool is_job_file(const std::string& path) {
+  demand_plain_file(path);
   std::array<char, 4> magic{};
   std::ifstream(path, std::ios::binary).read(magic.data(), magic.size());
   return std::string_view(magic.data(), magic.size()) == "BJOB" ||

@@ -8,6 +8,7 @@
 #include <optional>
 
 #include "driver/base/transport_errors.h"
+#include "driver/export/demand_apart.h"
 #include "driver/job/encoded_layers.h"
 #include "driver/job/estimate.h"
 #include "driver/job/slice_plan.h"
@@ -24,6 +25,7 @@ void slice(const SliceOptions& options, std::optional<int> threads, const Consol
     cores.emplace(oneapi::tbb::global_control::max_allowed_parallelism,
                   static_cast<std::size_t>(*threads));
   }
+  demand_apart({options.out}, options.parts);
   const SlicePlan plan = plan_slices(options, console);
   const LayerRange range = layer_range(options.layers, plan.header.layers());
   JobWriter writer = value_or_throw(JobWriter::create(options.out, to_text(plan.header)));

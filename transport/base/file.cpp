@@ -33,10 +33,8 @@ Failure system_failure(int error, const std::string& path, const std::string& do
 }
 
 Result<File> open_file(const std::string& path, int flags, FailureKind otherwise) {
-  int fd = -1;
-  do {
-    fd = ::open(path.c_str(), flags | O_CLOEXEC, 0666);
-  } while (fd < 0 && errno == EINTR);
+  // O_NONBLOCK means nothing to a plain file; a FIFO opens at once, to be refused by file_bytes().
+  const int fd = ::open(path.c_str(), flags | O_CLOEXEC | O_NONBLOCK, 0666);
   if (fd < 0) {
     const char* doing = (flags & O_CREAT) != 0 ? "cannot create it" : "cannot open it";
     return tl::unexpected(system_failure(errno, path, doing, otherwise));

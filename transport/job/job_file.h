@@ -6,6 +6,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <functional>
+#include <optional>
 #include <span>
 #include <string>
 #include <string_view>
@@ -88,8 +89,10 @@ class JobReader {
 
   std::vector<int> layers(RecordKind kind) const;  // ascending
   bool contains(RecordKind kind, int layer) const;
-  // The payload as it was given to encode_record.
-  Result<std::vector<std::byte>> read(RecordKind kind, int layer) const;
+  // The payload as it was given to encode_record. Where its size is known, give it: 32 KB of a
+  // stranger's file can unpack to a gigabyte.
+  Result<std::vector<std::byte>> read(RecordKind kind, int layer,
+                                      std::optional<std::size_t> size = {}) const;
   // The record as encode_record gave it, for sending and joining.
   Result<std::vector<std::byte>> read_record(RecordKind kind, int layer) const;
   // Every record there is, in the order of the file.

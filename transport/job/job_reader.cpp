@@ -87,7 +87,10 @@ bool JobReader::read_index(std::uint64_t size) {
       trailer->index_offset + kIndexHeadBytes > trailer_offset) {
     return false;
   }
-  bytes.resize(static_cast<std::size_t>(trailer_offset - trailer->index_offset));
+  // A file with holes can promise an index of gigabytes; its own count must agree.
+  const std::uint64_t index_bytes = trailer_offset - trailer->index_offset;
+  if ((index_bytes - kIndexHeadBytes) / kIndexEntryBytes != trailer->record_count) return false;
+  bytes.resize(static_cast<std::size_t>(index_bytes));
   if (!read_at(file_, trailer->index_offset, bytes, path_)) return false;
   std::optional<std::vector<IndexEntry>> entries =
       decode_index(bytes, *trailer, first_offset_, preamble_checksum_);
@@ -145,12 +148,16 @@ Result<std::vector<std::byte>> JobReader::read_record(RecordKind kind, int layer
   return record;
 }
 
-Result<std::vector<std::byte>> JobReader::read(RecordKind kind, int layer) const {
+Result<std::vector<std::byte>> JobReader::read(RecordKind kind, int layer,
+                                               std::optional<std::size_t> size) const {
   Result<std::vector<std::byte>> record = read_record(kind, layer);
   if (!record) return record;
   const IndexEntry& entry = *find(kind, layer);
   const std::optional<RecordHead> head = decode_record_head(*record);
   const std::span<const std::byte> frame = std::span(*record).subspan(kRecordHeadBytes);
+  if (size && head->payload_bytes != *size) {
+    return tl::unexpected(bad_record(path_, entry, "is not of the size that the job declares"));
+  }
   // Nothing is allocated on the word of a length alone: head and frame must agree about it.
   if (ZSTD_getFrameContentSize(frame.data(), frame.size()) != head->payload_bytes ||
       ZSTD_findFrameCompressedSize(frame.data(), frame.size()) != frame.size()) {

@@ -7,8 +7,10 @@
 #include <zstd.h>
 
 #include <algorithm>
+#include <array>
 #include <cassert>
 #include <cerrno>
+#include <cstdio>
 #include <memory>
 #include <new>
 #include <optional>
@@ -39,6 +41,18 @@ Result<void> check_replaceable(const std::string& path) {
   if (stat(path.c_str(), &info) == 0 && !S_ISREG(info.st_mode)) {
     return tl::unexpected(
         Failure{FailureKind::kDevice, path, "not a plain file; choose another name"});
+  }
+  std::array<std::byte, kPreambleBytes> head{};
+  // A plain file or none, by the line above.
+  std::FILE* there = std::fopen(path.c_str(), "rb");
+  if (there == nullptr && errno == ENOENT) return {};
+  const std::size_t size = there == nullptr ? 0 : std::fread(head.data(), 1, head.size(), there);
+  const bool read = there != nullptr && std::ferror(there) == 0;
+  if (there != nullptr) std::fclose(there);
+  if (!read || (size > 0 && !decode_preamble(std::span(head).first(size)))) {
+    return tl::unexpected(
+        Failure{FailureKind::kBadInput, path,
+                "is there and is no job, but somebody's file; choose another name"});
   }
   return {};
 }

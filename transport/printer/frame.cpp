@@ -103,14 +103,15 @@ std::optional<FoundFrame> find_frame(View bytes, Type type, std::size_t max_payl
                                      std::size_t from) {
   for (std::size_t at = from; at + kFrameHeadBytes <= bytes.size(); ++at) {
     const View here = bytes.subspan(at);
-    const std::optional<Head> head = decode_head(here);
-    if (!head || head->type != type || head->payload_bytes > max_payload ||
-        here.size() - kFrameHeadBytes < head->payload_bytes) {
+    if (!is_head(here)) continue;
+    const Head head = decode_head(here);
+    if (head.type != type || head.payload_bytes > max_payload ||
+        here.size() - kFrameHeadBytes < head.payload_bytes) {
       continue;
     }
-    const View payload = here.subspan(kFrameHeadBytes, head->payload_bytes);
+    const View payload = here.subspan(kFrameHeadBytes, head.payload_bytes);
     if (checksum(payload) != get_le<std::uint64_t>(here, 16)) continue;
-    return FoundFrame{{head->type, head->sequence, {payload.begin(), payload.end()}},
+    return FoundFrame{{head.type, head.sequence, {payload.begin(), payload.end()}},
                       at + kFrameHeadBytes + payload.size()};
   }
   return std::nullopt;

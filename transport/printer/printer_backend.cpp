@@ -203,7 +203,16 @@ Result<std::string> PrinterBackend::start(const JobTicket& ticket) {
       return tl::unexpected(why);
     }
   }
-  if (!started) return stopped(started.error());
+  if (!started) {
+    const bool kept = !cancelled_;
+    Failure why = stopped(started.error()).value();
+    if (!kept) return tl::unexpected(why);
+    why.what += fmt::format(
+        "; job {0} is held: binderjet resume {0} --to {1}, or binderjet cancel "
+        "{0} --to {1}",
+        id, access_.uri);
+    return tl::unexpected(why);
+  }
   return id;
 }
 
@@ -212,7 +221,7 @@ Result<int> PrinterBackend::resume(const std::string& id, const JobTicket& ticke
   {
     const Result<File> lock = journals_.lock();
     if (!lock) return tl::unexpected(lock.error());
-    Result<SpooledJob> job = resume_job(journals_, id, ticket, access_.uri);
+    Result<SpooledJob> job = resume_job(journals_, id, ticket, LayersAre::kAtDevice, access_.uri);
     if (!job) return tl::unexpected(job.error());
     job_ = *std::move(job);
   }

@@ -18,7 +18,7 @@ namespace binderjet {
 namespace {
 
 constexpr int kVersion = 1;
-constexpr std::uint64_t kMaxBytes = std::uint64_t{1} << 30;
+constexpr std::uint64_t kMaxBytes = std::uint64_t{1} << 26;  // half a million acknowledgements
 constexpr std::size_t kChecksumDigits = 16;
 
 std::string to_word(const std::string& text) {

@@ -2,8 +2,10 @@
 // The spool's folders and how jobs move between them.
 #include "transport/spool/spool.h"
 
+#include <fcntl.h>
 #include <fmt/core.h>
 #include <sys/file.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 #include <algorithm>
@@ -44,6 +46,33 @@ bool has_line(const std::string& path) {
              some.begin() + std::max<ssize_t>(size, 0);
 }
 
+// The counter and lock of a spool. In a folder that others can write to, a link put in its place
+// would have us write into the file it leads to.
+Result<File> open_counter(const std::string& folder, int flags) {
+  const std::string path = folder + "/last-id";
+  Result<File> file = open_file(path, O_RDWR | O_NOFOLLOW | flags);
+  if (!file) return file;
+  struct stat info = {};
+  if (fstat(file->fd(), &info) != 0 || !S_ISREG(info.st_mode) || info.st_nlink != 1) {
+    return tl::unexpected(Failure{FailureKind::kDevice, path,
+                                  "is no file of this spool alone but a link; remove it"});
+  }
+  return file;
+}
+
+// Nobody's home or project becomes a spool by a slip of the hand.
+Result<void> check_room_for_spool(const std::string& folder) {
+  if (path_exists(folder + "/last-id") || path_exists(folder + "/incoming")) return {};
+  std::error_code error;
+  for (const auto& entry : fs::directory_iterator(folder.empty() ? "/" : folder, error)) {
+    if (entry.path().filename() == "lost+found") continue;  // a disk of its own
+    return tl::unexpected(Failure{FailureKind::kBadInput, "spool:" + folder,
+                                  "holds " + entry.path().filename().string() +
+                                      " and is no spool; name a new or an empty folder"});
+  }
+  return {};
+}
+
 }  // namespace
 
 bool is_job_id(const std::string& text) {
@@ -52,12 +81,13 @@ bool is_job_id(const std::string& text) {
 }
 
 Result<void> Spool::create() const {
+  if (auto room = check_room_for_spool(folder_); !room) return room;
   for (const char* place : {"", "/incoming", "/held", "/done"}) {
     if (path_exists(folder_ + place)) continue;
     if (auto done = make_folder(folder_ + place); !done) return done;
     if (auto done = sync_folder(folder_of(folder_ + place)); !done) return done;
   }
-  const Result<File> counter = open_file(folder_ + "/last-id", O_RDWR | O_CREAT);
+  const Result<File> counter = open_counter(folder_, O_CREAT);
   if (!counter) return tl::unexpected(counter.error());
   return {};
 }
@@ -67,10 +97,11 @@ Result<File> Spool::lock() const {
     return tl::unexpected(Failure{FailureKind::kDevice, "spool:" + folder_,
                                   "no spool is here; printing to it makes one"});
   }
-  Result<File> file = open_file(folder_ + "/last-id", O_RDWR);
+  Result<File> file = open_counter(folder_, 0);
   if (!file) return file;
-  while (flock(file->fd(), LOCK_EX) != 0) {
-    if (errno != EINTR) return tl::unexpected(system_failure(errno, folder_, "cannot lock it"));
+  // Others hold it for as long as they change a job's place; EINTR is a person who waits no longer.
+  if (flock(file->fd(), LOCK_EX) != 0) {
+    return tl::unexpected(system_failure(errno, folder_, "cannot lock it"));
   }
   recover();
   return file;
@@ -103,6 +134,13 @@ Result<std::string> Spool::new_id(const File& lock) const {
     for (const std::string& id : ids(place)) last = std::max(last, id_number(id));
   }
   const std::string next = std::to_string(last + 1);
+  if (!is_job_id(next)) {
+    return tl::unexpected(Failure{
+        FailureKind::kDevice, folder_ + "/last-id",
+        fmt::format("has no number left after {}; jobs of such numbers did not come from this "
+                    "program: move them away and write the last right number here",
+                    last)});
+  }
   if (pwrite(lock.fd(), next.data(), next.size(), 0) != static_cast<ssize_t>(next.size())) {
     return tl::unexpected(system_failure(errno, folder_ + "/last-id", "cannot write"));
   }

@@ -74,7 +74,7 @@ Result<std::string> SpoolBackend::start(const JobTicket& ticket) {
 Result<int> SpoolBackend::resume(const std::string& id, const JobTicket& ticket) {
   const Result<File> lock = spool_.lock();
   if (!lock) return tl::unexpected(lock.error());
-  Result<SpooledJob> job = resume_job(spool_, id, ticket, where());
+  Result<SpooledJob> job = resume_job(spool_, id, ticket, LayersAre::kInSpool, where());
   if (!job) return tl::unexpected(job.error());
   job_ = *std::move(job);
   last_sync_ = Clock::time_point();

@@ -48,9 +48,9 @@ Result<SpooledJob> start_job(const Spool& spool, const File& lock, const JobTick
 }
 
 Result<SpooledJob> resume_job(const Spool& spool, const std::string& id, const JobTicket& ticket,
-                              const std::string& where) {
+                              LayersAre layers, const std::string& where) {
   if (!is_job_id(id)) return tl::unexpected(unknown_job(where, id));
-  const auto refuse = [&](const char* what) {
+  const auto refuse = [&](const std::string& what) {
     return tl::unexpected(
         Failure{FailureKind::kBadInput, where, fmt::format("job {} {}", id, what)});
   };
@@ -65,6 +65,10 @@ Result<SpooledJob> resume_job(const Spool& spool, const std::string& id, const J
   if (!journal) return refuse("is being looked at by another process; try again");
   const JournalState& state = journal->state();
   if (!state.started) return refuse(damaged);
+  if (state.to.empty() != (layers == LayersAre::kInSpool)) {
+    return refuse(state.to.empty() ? "lies in this spool alone: resume it with --to spool:"
+                                   : "is at " + state.to + ": resume it with --to " + state.to);
+  }
   // Looked at before anything is changed: a wrong ticket leaves the job as it is.
   const std::string part = folder + "/job.part";
   {

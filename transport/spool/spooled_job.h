@@ -36,9 +36,12 @@ Result<SpooledJob> start_job(const Spool& spool, const File& lock, const JobTick
                              const JobDevice& device = {});
 // A held job, back in incoming/, at the first layer that its journal does not acknowledge. It is
 // kBadInput, and nothing has changed, if the job is not held, is somebody else's at the moment, has
-// a damaged journal or was started with another ticket. With the spool's lock.
+// a damaged journal, was started with another ticket, or has its layers in another place: a
+// device's job can only go on at its device, for the spool has none of its layers. With the spool's
+// lock.
+enum class LayersAre { kInSpool, kAtDevice };
 Result<SpooledJob> resume_job(const Spool& spool, const std::string& id, const JobTicket& ticket,
-                              const std::string& where);
+                              LayersAre layers, const std::string& where);
 
 // kBadInput unless `layer` comes next.
 Result<void> check_next(const SpooledJob& job, int layer, const std::string& where);

@@ -89,6 +89,18 @@ TEST(Frame, IsFoundBehindWhateverAnEarlierSessionLeft) {
   EXPECT_FALSE(find_frame(noise, Type::kWelcome, 4096)) << "not yet whole";
 }
 
+TEST(Frame, WithAWrongHeadIsNotFound) {
+  Welcome welcome;
+  welcome.session = 77;
+  const auto right = encode_frame(Type::kWelcome, 0, encode(welcome));
+  ASSERT_TRUE(find_frame(right, Type::kWelcome, 4096));
+  for (std::size_t i = 0; i < right.size(); ++i) {
+    auto wrong = right;
+    wrong[i] ^= std::byte{4};
+    EXPECT_FALSE(find_frame(wrong, Type::kWelcome, 4096)) << "byte " << i;
+  }
+}
+
 TEST(Message, StatusSaysWhatItWasGiven) {
   Status status;
   status.state = State::kStopped;

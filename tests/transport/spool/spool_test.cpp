@@ -5,9 +5,13 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <filesystem>
+#include <fstream>
+
 #include "tests/transport/sample_job.h"
 #include "transport/open/open_backend.h"
 #include "transport/spool/journal.h"
+#include "transport/spool/spooled_job.h"
 
 namespace binderjet {
 namespace {
@@ -222,6 +226,58 @@ TEST_F(SpoolTest, MakesNoSpoolWhereTheParentIsMissing) {
   const auto started = (*open_backend("spool:" + (folder_ / "no/such/spool")))->start(ticket_);
   ASSERT_FALSE(started);
   EXPECT_EQ(started.error().kind, FailureKind::kDevice);
+}
+
+// Its layers are at the device, and the spool would call it done without them.
+TEST_F(SpoolTest, RefusesToResumeWhatADeviceHas) {
+  const Spool spool(spool_);
+  ASSERT_TRUE(spool.create());
+  std::string id;
+  {
+    const auto lock = spool.lock();
+    ASSERT_TRUE(lock);
+    const auto job = start_job(spool, *lock, ticket_, {"usb:abc", 7});
+    ASSERT_TRUE(job) << job.error().what;
+    id = job->id;
+    ASSERT_TRUE(spool.hold(id));
+  }
+  const auto resumed = backend()->resume(id, ticket_);
+  ASSERT_FALSE(resumed);
+  EXPECT_THAT(resumed.error().what, HasSubstr("is at usb:abc: resume it with --to usb:abc"));
+  EXPECT_EQ(only_job().state, JobState::kHeld);
+  EXPECT_EQ(only_job().acknowledged, 0);
+}
+
+TEST_F(SpoolTest, MakesNoSpoolOfAFolderWithOtherThings) {
+  std::filesystem::create_directory(spool_);
+  std::ofstream(spool_ + "/thesis.txt") << "mine";
+  const auto started = backend()->start(ticket_);
+  ASSERT_FALSE(started);
+  EXPECT_THAT(started.error().what, HasSubstr("holds thesis.txt and is no spool"));
+  EXPECT_THAT(names_in(spool_), ElementsAre("thesis.txt"));
+}
+
+TEST_F(SpoolTest, FollowsNoLinkInThePlaceOfItsCounter) {
+  held_job(1);
+  std::filesystem::remove(spool_ + "/last-id");
+  std::ofstream(folder_ / "passwd") << "root";
+  std::filesystem::create_symlink(folder_ / "passwd", spool_ + "/last-id");
+  EXPECT_FALSE(backend()->start(ticket_));
+  std::filesystem::remove(spool_ + "/last-id");
+  std::filesystem::create_hard_link(folder_ / "passwd", spool_ + "/last-id");
+  const auto started = backend()->start(ticket_);
+  ASSERT_FALSE(started);
+  EXPECT_THAT(started.error().what, HasSubstr("a link"));
+  EXPECT_EQ(file_text(folder_ / "passwd"), "root");
+}
+
+TEST_F(SpoolTest, GivesNoNumberThatItWouldNotFindAgain) {
+  held_job(1);
+  std::ofstream(spool_ + "/last-id") << "999999999999999999";
+  const auto started = backend()->start(ticket_);
+  ASSERT_FALSE(started);
+  EXPECT_THAT(started.error().what, HasSubstr("has no number left after 999999999999999999"));
+  EXPECT_THAT(names_in(spool_ + "/incoming"), IsEmpty());
 }
 
 TEST_F(SpoolTest, SaysThatThereIsNoSpool) {
