@@ -19,7 +19,7 @@ fi
 # Left out: what measures time or memory or looks at pages, and what takes a minute with a sanitizer
 # and is not the only test of its code. SLOW= runs all of it.
 slow='StaysWithin|WithinASecond|Viewer|NastyFile|CleanModel|Export3mf.(Has|Gives|IsAcc)|^Disk|^Names'
-slow+='|^Portable|^Terminal.(Shows|Stays|OfFew)|CouponOfKind|^EmulatorVerb.Killed|^Changing|^Interrupted|PaperColor|PaperGargoyle|Mend.NeverMakes|SecondPrint'
+slow+='|^Portable|^Terminal|^Keys|CouponOfKind|^EmulatorVerb.Killed|^Changing|^Interrupted|PaperColor|PaperGargoyle|Mend.NeverMakes|SecondPrint'
 slow+='|^Inverse.(Never|Answers|Keeps|GivesTheSameInPiecesBlocks)|Calibrate.(NamesBleed|SaysOnWhat)'
 slow_thread='|^Export|^Slots|^Measured|^Interrupt.Ends|Calibrate.(Gives|Takes|Finds|NamesThe)'
 

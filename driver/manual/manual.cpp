@@ -210,7 +210,10 @@ _binderjet() {{
   case "${{COMP_WORDS[1]}} $before" in
 {}  esac
   case "$before" in
-    -p | --profile) words=$(binderjet profile list 2> /dev/null | cut -d' ' -f1) ;;
+    # compgen expands its words, so a name that the shell would run is not among them.
+    -p | --profile)
+      words=$(binderjet profile list 2> /dev/null | sed -n 's/^\([[:alnum:]._+-]*\) .*/\1/p')
+      ;;
   esac
   if [ -z "$words" ] && [[ $current == -* ]]; then
     case "${{COMP_WORDS[1]}}" in

@@ -252,7 +252,7 @@ Profile parse_profile(const std::string& text, const std::string& path) {
 
   Table grid = root.table("grid");
   profile.dpi = fixed<2>(grid.numbers("dpi", 2, 0, 10000));
-  profile.layer_mm = grid.numbers("layer_mm", 0, 0, 10);
+  profile.layer_mm = grid.numbers("layer_mm", 0, 0.001, 10);
   const toml::node& detail = grid.need("detail_vx");
   const std::vector<double> detail_vx = grid.numbers("detail_vx", 3, 0, 16);
   for (std::size_t axis = 0; axis < 3; ++axis) {

@@ -109,11 +109,15 @@ DecodedImage decode_color(OIIO::ImageInput& input, int factor) {
 }  // namespace
 
 DecodedImage decode_image(const ImageRequest& request, std::span<const std::byte> content) {
+  // A thread for each core would take of the memory and the seconds that one image has.
+  OIIO::attribute("threads", 1);
+  OIIO::attribute("exr_threads", 1);
   const Open open = open_image(request, content);
   const OIIO::ImageSpec& spec = open.input->spec();
   if (spec.width < 1 || spec.height < 1 || std::int64_t{spec.width} * spec.height > kMostPixels) {
     throw std::runtime_error("has no pixels, or more than 2^31");
   }
+  if (spec.depth > 1) throw std::runtime_error("is a volume of several layers, not one image");
   if (request.wish == ImageWish::kSize) return {spec.width, spec.height, {}};
   if (request.wish == ImageWish::kGray) return decode_gray(*open.input);
   return decode_color(*open.input, static_cast<int>(request.factor));

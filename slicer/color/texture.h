@@ -26,8 +26,8 @@ struct Texture {
   Rgb at(const Uv& uv, const std::array<Uv, 3>& corners) const;
 };
 
-// Decodes what binderjet-read knows; alpha is left out. Above `texels` for all images together each is
-// averaged down by a whole factor, which bounds memory; 2^24 are still finer than the printer's
+// Decodes what binderjet-read knows; alpha is left out. Above `texels` for all images together each
+// is averaged down by a whole factor, which bounds memory; 2^24 are still finer than the printer's
 // pixels on a part as large as the bed. An image that cannot be decoded is none, with a warning.
 std::vector<std::optional<Texture>> load_textures(const std::vector<TextureSource>& sources,
                                                   std::vector<std::string>& warnings,

@@ -47,8 +47,8 @@ ReaderProcess::ReaderProcess() {
                 fmt::format("cannot be talked to: {}", std::strerror(errno)));
   }
   socket_ = ends[0];
-  // The socket is its standard input. Nothing else of ours is open to it, and nothing that it prints
-  // comes between the lines of --json.
+  // The socket is its standard input. Nothing else of ours is open to it, and nothing that it
+  // prints comes between the lines of --json.
   posix_spawn_file_actions_t files;
   posix_spawn_file_actions_init(&files);
   posix_spawn_file_actions_adddup2(&files, ends[1], 0);
@@ -89,7 +89,6 @@ std::optional<ReaderAnswer> ReaderProcess::ask(const ImageRequest& request,
     return std::nullopt;
   }
   if (!plausible(answer.reply, request)) {
-    ::kill(process_, SIGKILL);  // it need not end by itself
     said_nonsense_ = true;
     return std::nullopt;
   }
@@ -100,6 +99,8 @@ std::optional<ReaderAnswer> ReaderProcess::ask(const ImageRequest& request,
 
 std::string ReaderProcess::end() {
   int status = 0;
+  // For who closed the socket and goes on; who is ending has its status already.
+  ::kill(process_, SIGKILL);
   while (::waitpid(process_, &status, 0) < 0 && errno == EINTR) continue;
   process_ = -1;
   if (WIFSIGNALED(status) && WTERMSIG(status) == SIGXCPU) return "takes too long to decode";

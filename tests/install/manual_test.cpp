@@ -103,5 +103,27 @@ TEST(Completion, OffersVerbsOptionsAndTheirValues) {
   EXPECT_EQ(offered("binderjet profile sh"), "show\n");
 }
 
+TEST(Completion, RunsNoNameOfAProfile) {
+  const Workplace place;
+  // A program that lists what somebody may have put into the folder of profiles.
+  std::ofstream(place / "binderjet") << "#!/bin/sh\n"
+                                        "echo 'z450 /share/z450.toml'\n"
+                                        "echo '$(touch${IFS}'\"$HERE\"'/pwned) /share/x.toml'\n"
+                                        "echo '`touch '\"$HERE\"'/pwned2` /share/y.toml'\n";
+  std::filesystem::permissions(place / "binderjet", std::filesystem::perms(0755));
+  std::ofstream(place / "script")
+      << "source " BINDERJET_BUILD_DIR
+         "/manual/binderjet; COMP_WORDS=(binderjet slice -p z); "
+         "COMP_CWORD=3; compopt() { :; }; _binderjet; echo \"${COMPREPLY[@]}\"";
+  const std::string here = place / "";
+  EXPECT_EQ(std::system(("HERE='" + here + "' PATH='" + here + "':$PATH bash " +
+                         (place / "script") + " > " + (place / "said"))
+                            .c_str()),
+            0);
+  EXPECT_EQ(place.text("said"), "z450\n");
+  EXPECT_FALSE(std::filesystem::exists(place / "pwned"));
+  EXPECT_FALSE(std::filesystem::exists(place / "pwned2"));
+}
+
 }  // namespace
 }  // namespace binderjet
