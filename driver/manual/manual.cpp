@@ -137,7 +137,11 @@ std::string program_page(const CLI::App& program) {
       ".SH ENVIRONMENT\n.TP\n\\fBBINDERJET_STATE\\fR\nwhere the journals of printed jobs are kept "
       "(default: ~/.local/state/binderjet)\n"
       ".TP\n\\fBBINDERJET_PROGRESS_AFTER\\fR\nafter so many seconds of work a terminal shows "
-      "how far it is (default: 0.5); with 0 every step is shown\n";
+      "how far it is (default: 0.5); with 0 every step is shown\n"
+      ".TP\n\\fBBINDERJET_READ\\fR\nthe program that decodes images (default: binderjet-read "
+      "beside this one)\n"
+      ".SH NAMES\nNames of files are bytes. In messages and in JSON a byte that is not UTF-8, and in "
+      "messages one that a terminal would obey, is written \\exNN with two hex digits.\n";
   return out;
 }
 

@@ -203,16 +203,7 @@ Result<std::string> PrinterBackend::start(const JobTicket& ticket) {
       return tl::unexpected(why);
     }
   }
-  if (!started) {
-    const bool kept = !cancelled_;
-    Failure why = stopped(started.error()).value();
-    if (!kept) return tl::unexpected(why);
-    why.what += fmt::format(
-        "; job {0} is held: binderjet resume {0} --to {1}, or binderjet cancel "
-        "{0} --to {1}",
-        id, access_.uri);
-    return tl::unexpected(why);
-  }
+  if (!started) return stopped(started.error());
   return id;
 }
 

@@ -15,6 +15,7 @@ JobHeader header_of(Enhancement enhancement) {
   header.profile = load_profile("z450");
   header.grid = header.profile.grid(std::nullopt);
   header.box.size_px = {1, 1, 1};
+  header.sources.emplace_back();
   header.enhance = enhancement;
   return header;
 }
