@@ -60,12 +60,19 @@ Result<File> open_counter(const std::string& folder, int flags) {
   return file;
 }
 
+// A spool, or the beginning of one: `incoming` is the first that create() makes.
+bool is_spool(const std::string& folder) {
+  return path_exists(folder + "/last-id") || path_exists(folder + "/incoming");
+}
+
 // Nobody's home or project becomes a spool by a slip of the hand.
 Result<void> check_room_for_spool(const std::string& folder) {
-  if (path_exists(folder + "/last-id") || path_exists(folder + "/incoming")) return {};
+  if (is_spool(folder)) return {};
   std::error_code error;
   for (const auto& entry : fs::directory_iterator(folder.empty() ? "/" : folder, error)) {
     if (entry.path().filename() == "lost+found") continue;  // a disk of its own
+    // Another process may have begun the spool since: what we see here is then its own.
+    if (is_spool(folder)) return {};
     return tl::unexpected(Failure{FailureKind::kBadInput, "spool:" + folder,
                                   "holds " + entry.path().filename().string() +
                                       " and is no spool; name a new or an empty folder"});
