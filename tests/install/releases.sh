@@ -30,7 +30,7 @@ for release in "${@:2}"; do
       ;;
     *.tar.xz)  # which only root's folder may hold that its users cannot write
       xz -dc "$package" | tar -x -C "$root/opt"
-      program=$(cd "$root" && echo /opt/*/bin/binderjet)
+      program=/$(cd "$root" && echo opt/*/bin/binderjet)
       ;;
   esac
   install -d -o nobody "$root/tmp/jobs"
