@@ -53,7 +53,8 @@ class Workplace {
 
   // `words` follow the program's name; more than `seconds` of computing or `memory_mb` of address
   // space end it. `meanwhile` is called once it runs.
-  Ran run(const std::vector<std::string>& words, unsigned seconds = 600, std::size_t memory_mb = 0,
+  Ran run(const std::vector<std::string>& words, unsigned seconds = 600,
+          [[maybe_unused]] std::size_t memory_mb = 0,
           const std::function<void(pid_t)>& meanwhile = {}) const {
     Ran ran;
     const auto start = std::chrono::steady_clock::now();
@@ -63,7 +64,9 @@ class Workplace {
       std::signal(SIGINT, SIG_DFL);  // which who runs the tests by & has told them to ignore
       limit(RLIMIT_CPU, seconds);
       alarm(wall_seconds);
+#if !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__)  // their shadow is terabytes
       if (memory_mb != 0) limit(RLIMIT_AS, memory_mb << 20);
+#endif
       std::vector<char*> argv = {const_cast<char*>(BINDERJET_PROGRAM)};
       for (const std::string& word : words) argv.push_back(const_cast<char*>(word.c_str()));
       argv.push_back(nullptr);

@@ -127,7 +127,7 @@ TEST_F(Loss, OfSenseInAJobsHeader) {
           {"score", job, "--target", here_ / "part.obj"},
           {"simulate", job, "-p", "z450", "-o", here_ / "printed"},
           {"export", job, "--html", here_ / "a.html"}}) {
-      EXPECT_EQ(here_.run(words, 10).status, 3) << words.front();
+      EXPECT_EQ(here_.run(words, 10, 1024).status, 3) << words.front();
     }
   }
   for (const auto& [key, value] :
@@ -139,7 +139,7 @@ TEST_F(Loss, OfSenseInAJobsHeader) {
                                                  {"corner_px", {2000000000, 0}}}) {
     SCOPED_TRACE(key + " " + value.dump());
     const std::string job = job_with([&](Json& header) { header["sources"][0][key] = value; });
-    const Ran ran = here_.run({"export", job, "--what", "target", "-o", here_ / "out"}, 10);
+    const Ran ran = here_.run({"export", job, "--what", "target", "-o", here_ / "out"}, 10, 1024);
     EXPECT_EQ(ran.status, 3) << ran.err;
   }
 }
@@ -159,7 +159,7 @@ TEST_F(Loss, OfSenseInANumberOfTheCommandLine) {
         words.insert(words.end(), {"--enhance", "none", "-o", here_ / "x.bjob"});
       }
       words.insert(words.end(), option.begin(), option.end());
-      const Ran ran = here_.run(words, 10);
+      const Ran ran = here_.run(words, 10, 1024);
       EXPECT_THAT(ran.status, AnyOf(2, 3)) << verb << ": " << ran.out << ran.err;
       EXPECT_FALSE(fs::exists(here_ / "x.bjob"));
     }
