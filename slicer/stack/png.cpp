@@ -56,17 +56,23 @@ Bytes filter_up(std::span<const std::byte> bits, std::size_t stride, int height)
 }
 
 Bytes zlib_deflate(Bytes& raw) {
+  auto* in = reinterpret_cast<std::uint8_t*>(raw.data());
+  const std::size_t size = raw.size();
+  isal_huff_histogram counts{};
+  isal_update_histogram(in, static_cast<int>(size), &counts);
+  isal_hufftables codes;
+  if (isal_create_hufftables(&codes, &counts) != 0) throw std::logic_error("no Huffman codes");
   isal_zstream stream{};  // what a job before left in it would change the bytes
   isal_deflate_stateless_init(&stream);
-  Bytes level_buffer(ISAL_DEF_LVL1_DEFAULT);
-  Bytes out(raw.size() + raw.size() / 8 + 1024);
-  stream.level = 1;
-  stream.level_buf = reinterpret_cast<std::uint8_t*>(level_buffer.data());
-  stream.level_buf_size = static_cast<std::uint32_t>(level_buffer.size());
+  Bytes out(size + size / 8 + 1024);
+  // Level 1 puts its stream's address into its hash table: one mask in a thousand got other bytes.
+  // Level 0 with codes of the data's own is 7 % larger and takes twice the time, 0.3 ms.
+  stream.level = 0;
+  stream.hufftables = &codes;
   stream.gzip_flag = IGZIP_ZLIB;
   stream.end_of_stream = 1;
-  stream.next_in = reinterpret_cast<std::uint8_t*>(raw.data());
-  stream.avail_in = static_cast<std::uint32_t>(raw.size());
+  stream.next_in = in;
+  stream.avail_in = static_cast<std::uint32_t>(size);
   stream.next_out = reinterpret_cast<std::uint8_t*>(out.data());
   stream.avail_out = static_cast<std::uint32_t>(out.size());
   if (isal_deflate_stateless(&stream) != COMP_OK) throw std::logic_error("deflate found no room");

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Layers as PNG files: 1-bit masks and RGB with the true resolution in the pHYs chunk.
 //
-// A mask is a signature and four chunks around one deflate stream. ISA-L deflates it ten times
+// A mask is a signature and four chunks around one deflate stream. ISA-L deflates it five times
 // faster than zlib at the same size, and masks are the bulk of an export; libpng cannot be given
 // another deflate, so the few chunks are written here.
 #pragma once
