@@ -48,10 +48,18 @@ Keys place_of_fault() {
           {"volume_mm3", "its volume in cubic mm"}};
 }
 
+Keys wrong_place() {
+  return {{"kind", "lost, fused, or else thin or thick: what is missing there, or too much"},
+          {"at_mm", "its place on the bed: x, y, z in mm"},
+          {"layer", "its layer"},
+          {"depth_mm", "its distance from the target's surface, mm; 2 stands for 2 or more"}};
+}
+
 Keys edge_errors() {
-  return {{"mean", "distance of the edges from where they should be, mean over all edges, mm"},
-          {"p95", "the distance that 95 % of the edges do not exceed, mm"},
-          {"max", "the largest distance, mm"}};
+  return {
+      {"mean", "distance of the edges from where they should be, mean over all edges, mm"},
+      {"p95", "the distance that 95 % of the edges do not exceed, mm"},
+      {"max", "the largest distance, mm; 2 where no edge is found within 2 mm, as in the others"}};
 }
 
 Keys score_sheet() {
@@ -62,7 +70,13 @@ Keys score_sheet() {
               {"excess", "wrong - floor"},
               {"window_excess.mean", "excess if the printer is a little off its profile: the mean"},
               {"window_excess.worst", "and the worst over the process window"}} +
-         within("epe_mm", edge_errors()) + faults() +
+         Keys{{"depth_mm.p999",
+               "the distance from the target's surface, mm, that 99.9 % of the wrong voxels do not "
+               "exceed; without those that no mask avoids"},
+              {"depth_mm.worst", "that of the deepest"},
+              {"depth_mm.searched", "a distance of this much, mm, stands for this much or more"},
+              {"deepest", "where the deepest wrong voxel is; null if none is wrong"}} +
+         within("deepest", wrong_place()) + within("epe_mm", edge_errors()) + faults() +
          Keys{{"mask.least_island_px", "the smallest island of a mask, in pixels; null if none"},
               {"mask.least_hole_px", "the smallest hole of a mask, in pixels; null if none"}};
 }

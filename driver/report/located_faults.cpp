@@ -1,12 +1,20 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "driver/report/located_faults.h"
 
+#include <fmt/format.h>
+
 #include <cmath>
+#include <map>
 #include <nlohmann/json.hpp>
 #include <tuple>
 
 namespace binderjet {
 namespace {
+
+std::string depth_text(double depth_mm) {
+  if (depth_mm >= Depths::kMaxMm) return fmt::format("more than {:g} mm", Depths::kMaxMm);
+  return fmt::format("{:.3f} mm", depth_mm);
+}
 
 auto key(const Region& region) {
   return std::tuple(-region.voxels, region.low[2], region.low[1], region.low[0]);
@@ -43,6 +51,31 @@ nlohmann::ordered_json located(std::string_view kind, const Region& region,
           {"layers", {region.low[2] / rz, (region.high[2] + rz - 1) / rz}},
           {"voxels", region.voxels},
           {"volume_mm3", static_cast<double>(region.voxels) * voxel_mm3}};
+}
+
+nlohmann::ordered_json located(const WrongPlace& place, const std::array<double, 3>& origin_mm,
+                               const Grid& grid) {
+  nlohmann::ordered_json at = nlohmann::ordered_json::array();
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    at.push_back(
+        rounded(origin_mm[axis] + grid.center_mm(static_cast<int>(axis), place.voxel[axis])));
+  }
+  return {{"kind", word(place.kind)},
+          {"at_mm", at},
+          {"layer", place.voxel[2] / grid.detail_vx[2]},
+          {"depth_mm", rounded(place.depth_mm)}};
+}
+
+std::string place_text(const nlohmann::ordered_json& located) {
+  const auto& at = located["at_mm"];
+  static const std::map<std::string, const char*> words = {{"lost", "into what is lost"},
+                                                           {"fused", "into a gap that is fused"},
+                                                           {"thin", "too thin"},
+                                                           {"thick", "too thick"}};
+  return fmt::format("{} {} at {:.1f}, {:.1f}, {:.1f} mm, layer {}",
+                     depth_text(located["depth_mm"].get<double>()),
+                     words.at(located["kind"].get<std::string>()), at[0].get<double>(),
+                     at[1].get<double>(), at[2].get<double>(), located["layer"].get<int>());
 }
 
 }  // namespace binderjet

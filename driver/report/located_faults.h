@@ -1,17 +1,19 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The faults of a print and where on the bed they are: a list that stays bounded, the largest
-// first.
+// The faults of a print and its deepest wrong places, and where on the bed they are; of faults a
+// list that stays bounded, the largest first.
 #pragma once
 
 #include <algorithm>
 #include <array>
 #include <cstddef>
 #include <nlohmann/json_fwd.hpp>
+#include <string>
 #include <string_view>
 #include <vector>
 
 #include "slicer/layers/grid.h"
 #include "slicer/layers/regions.h"
+#include "slicer/score/depth.h"
 #include "slicer/score/faults.h"
 
 namespace binderjet {
@@ -50,5 +52,12 @@ class LargestOf {
 // voxel 0, 0 of slice 0.
 nlohmann::ordered_json located(std::string_view kind, const Region& region,
                                const std::array<double, 3>& origin_mm, const Grid& grid);
+
+// A wrong voxel: what it is, where on the bed, in which layer, how deep.
+nlohmann::ordered_json located(const WrongPlace& place, const std::array<double, 3>& origin_mm,
+                               const Grid& grid);
+// The same for a person, of what located() gives: "0.640 mm too thin at 101.5, 127.0, 3.2 mm, layer
+// 31".
+std::string place_text(const nlohmann::ordered_json& located);
 
 }  // namespace binderjet

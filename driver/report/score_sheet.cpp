@@ -7,10 +7,12 @@
 #include <algorithm>
 #include <limits>
 #include <nlohmann/json.hpp>
+#include <optional>
 #include <utility>
 
 #include "driver/job/job_masks.h"
 #include "driver/job/print_stream.h"
+#include "driver/report/located_faults.h"
 #include "slicer/voxels/voxelize.h"
 
 namespace binderjet {
@@ -62,7 +64,8 @@ ScoreSheet score_masks(const MaskSource& masks, const JobHeader& header,
   sheet.masks = regions_of(masks, work);
   Scorer scorer(header.grid, masks.first);
   const auto layers =
-      score_layers(voxelize(target, header.grid, header.box, masks.layers()),
+      score_layers(voxelize(target, header.grid, header.box,
+                            target_around(masks.layers(), header.grid, header.layers())),
                    printed_stream(masks, models.front(), work), header.grid, masks.layers());
   {
     Stage stage(work, "scoring", masks.size_px[2], "layers");
@@ -79,6 +82,9 @@ ScoreSheet score_masks(const MaskSource& masks, const JobHeader& header,
   }
   sheet.score = scorer.finish();
   if (listener) listener({}, sheet.score.last_faults);
+  if (const std::optional<WrongPlace>& worst = sheet.score.depths.worst()) {
+    sheet.deepest = located(*worst, header.origin_mm(), header.grid);
+  }
 
   sheet.window_worst = sheet.score.voxels.excess();
   double sum = sheet.window_worst;
@@ -115,12 +121,18 @@ MaskSource enhanced_masks(const MaskSource& job, JobHeader header,
 nlohmann::ordered_json to_json(const ScoreSheet& sheet) {
   const VoxelCounts& counts = sheet.score.voxels;
   const EdgeErrors& edges = sheet.score.edges;
+  const Depths& depths = sheet.score.depths;
   nlohmann::ordered_json json = {
       {"solid_voxels", counts.solid},
       {"wrong", counts.wrong()},
       {"floor", counts.floor()},
       {"excess", counts.excess()},
       {"window_excess", {{"mean", sheet.window_mean}, {"worst", sheet.window_worst}}},
+      {"depth_mm",
+       {{"p999", depths.p999_mm()},
+        {"worst", depths.worst() ? depths.worst()->depth_mm : 0},
+        {"searched", Depths::kMaxMm}}},
+      {"deepest", sheet.deepest},
       {"epe_mm", {{"mean", edges.mean_mm()}, {"p95", edges.p95_mm()}, {"max", edges.max_mm()}}}};
   for (const FaultKind kind : kFaultKinds) json[std::string(word(kind))] = sheet.score.faults[kind];
   json["mask"] = {{"least_island_px", to_json(sheet.masks.smallest_island_px)},

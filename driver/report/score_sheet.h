@@ -5,7 +5,7 @@
 
 #include <functional>
 #include <memory>
-#include <nlohmann/json_fwd.hpp>
+#include <nlohmann/json.hpp>
 #include <string>
 #include <vector>
 
@@ -23,6 +23,8 @@ struct ScoreSheet {
   double window_mean = 0;  // excess, over the model and the corners of its window
   double window_worst = 0;
   MaskRegions masks;
+  // located(): the deepest wrong voxel; null if no voxel counts.
+  nlohmann::ordered_json deepest;
 };
 
 // Hears of the layers from the first on, a block at a time, with the faults that end there; then of

@@ -13,6 +13,7 @@
 #include "driver/base/console.h"
 #include "driver/job/mask_source.h"
 #include "driver/job/parts.h"
+#include "driver/report/located_faults.h"
 #include "driver/report/score_map.h"
 #include "driver/report/score_sheet.h"
 #include "driver/verbs/verbs.h"
@@ -48,26 +49,47 @@ std::shared_ptr<const Mesh> load_target(const ScoreOptions& options, const JobHe
   return std::make_shared<const Mesh>(merge_parts(std::move(parts), header.grid));
 }
 
+std::string edge_text(const EdgeErrors& edges) {
+  // What lies farther off is not searched, so a mean over it would say nothing.
+  if (edges.p95_mm() >= EdgeErrors::kMaxMm) {
+    return fmt::format("more than 5 % of the edges have no printed edge within {:g} mm",
+                       EdgeErrors::kMaxMm);
+  }
+  return fmt::format("edges off by {:.3f} mm on average, 95 % by less than {:.3f} mm",
+                     edges.mean_mm(), edges.p95_mm());
+}
+
+std::string deepest_text(const ScoreSheet& sheet) {
+  if (sheet.deepest.is_null()) return "nothing is wrong beyond what the layer height costs";
+  const double p999_mm = sheet.score.depths.p999_mm();
+  return fmt::format(
+      "deepest wrong place: {}\n{}", place_text(sheet.deepest),
+      p999_mm < Depths::kMaxMm
+          ? fmt::format("99.9 % of what is wrong: at most {:.3f} mm deep", p999_mm)
+          : fmt::format("more than 0.1 % of what is wrong: deeper than {:g} mm", Depths::kMaxMm));
+}
+
 std::string text_of(const ScoreSheet& sheet) {
   const VoxelCounts& counts = sheet.score.voxels;
-  const EdgeErrors& edges = sheet.score.edges;
   const FaultCounts& faults = sheet.score.faults;
   return fmt::format(
       "wrong {:.4f} of {} solid voxels, {:.4f} of it unavoidable at this layer height, "
       "excess {:.4f}\nif the printer is a little off: excess {:.4f} on average, at worst {:.4f}\n"
-      "edges off by {:.3f} mm on average, 95 % by less than {:.3f} mm, "
-      "at most {:.3f} mm\nfaults: {} lost, {} fused, {} spurious, {} loose, "
-      "{} joined",
+      "{}\n{}\nfaults: {} lost, {} fused, {} spurious, {} loose, {} joined",
       counts.wrong(), counts.solid, counts.floor(), counts.excess(), sheet.window_mean,
-      sheet.window_worst, edges.mean_mm(), edges.p95_mm(), edges.max_mm(), faults[FaultKind::kLost],
-      faults[FaultKind::kFused], faults[FaultKind::kSpurious], faults[FaultKind::kLoose],
-      faults[FaultKind::kJoined]);
+      sheet.window_worst, deepest_text(sheet), edge_text(sheet.score.edges),
+      faults[FaultKind::kLost], faults[FaultKind::kFused], faults[FaultKind::kSpurious],
+      faults[FaultKind::kLoose], faults[FaultKind::kJoined]);
 }
 
 std::string table_row(const std::string& enhance, const ScoreSheet& sheet) {
-  std::string row =
-      fmt::format("\n{:8} {:7.4f} {:7.4f} {:7.4f} {:8.3f}", enhance, sheet.score.voxels.excess(),
-                  sheet.window_mean, sheet.window_worst, sheet.score.edges.mean_mm());
+  const std::optional<WrongPlace>& deepest = sheet.score.depths.worst();
+  const double depth_mm = deepest ? deepest->depth_mm : 0;
+  const bool farther = depth_mm >= Depths::kMaxMm;
+  std::string row = fmt::format("\n{:8} {:7.4f} {:7.4f} {:7.4f} {:>8} {:8.3f}", enhance,
+                                sheet.score.voxels.excess(), sheet.window_mean, sheet.window_worst,
+                                fmt::format("{}{:.3f}", farther ? ">" : "", depth_mm),
+                                sheet.score.edges.mean_mm());
   for (const FaultKind kind : kFaultKinds) row += fmt::format(" {:>8}", sheet.score.faults[kind]);
   return row;
 }
@@ -99,7 +121,7 @@ void score(const ScoreOptions& options, const Console& console) {
   nlohmann::ordered_json json = to_json(own);
   std::string text = text_of(own);
   if (options.compare) {
-    text += "\n\nmasks     excess    mean   worst  edge mm";
+    text += "\n\nmasks     excess    mean   worst  deep mm  edge mm";
     for (const FaultKind kind : kFaultKinds) text += fmt::format(" {:>8}", word(kind));
     JobHeader other = header;
     other.profile = profile;

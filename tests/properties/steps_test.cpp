@@ -80,16 +80,17 @@ std::string type_name(const std::type_index& type) {
   return name.substr(name.rfind(':') + 1);
 }
 
-// Layers of the printer model's window (w) and of the colored shell's (c).
+// Layers of the printer model's window (w), of the colored shell's (c) and of the depth's (d).
 struct Lengths {
   int w = 0;
   int c = 0;
+  int d = 0;
 };
 
 std::string formula(const StepInfo& step, const std::string& written, const Lengths& by) {
-  const std::map<std::string, int> values{{"0", 0},    {"1", 1},
-                                          {"w", by.w}, {"2 w + 1", 2 * by.w + 1},
-                                          {"c", by.c}, {"1 block of 16", 1}};
+  const std::map<std::string, int> values{
+      {"0", 0},    {"1", 1},    {"w", by.w},         {"2 w + 1", 2 * by.w + 1},
+      {"c", by.c}, {"d", by.d}, {"1 block of 16", 1}};
   EXPECT_TRUE(values.contains(written)) << written;
   const bool in_blocks = step.block_layers > 0;
   if (in_blocks != (written == "1 block of 16")) return "is in other units";
@@ -183,7 +184,8 @@ TEST_F(Steps, AreThoseOfTheTableInTheReadme) {
   const MaskSource masks{};
   expect_listed("simulate", printed_layers(masks, printer).steps(), {w, 0});
   const Pipeline<ComparedLayer> compared("compare", {0, 1}, Pipeline<ComparedLayer>::Open());
-  expect_listed("score", score_steps(compared, plain.grid).steps(), {});
+  expect_listed("score", score_steps(compared, plain.grid).steps(),
+                {0, 0, DepthFinder(plain.grid).reach().below});
 
   for (const Row& row : rows_) {
     EXPECT_TRUE(met_.contains(row.name)) << row.name << " is run by none";

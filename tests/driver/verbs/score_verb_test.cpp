@@ -61,6 +61,28 @@ TEST_F(ScoreVerb, TellsOfThePinThatVanishes) {
   EXPECT_EQ(score["spurious"], 0);
 }
 
+TEST_F(ScoreVerb, TellsHowDeepThePinIsWrongAndWhere) {
+  const auto score = run({"score", file("pin.bjob"), "--target", file("pin.obj")});
+  // Of a pin of 0.2 x 0.1 mm the middle is 0.05 mm from its surface, less where voxels lie.
+  EXPECT_GT(score["depth_mm"]["worst"], 0.02);
+  EXPECT_LE(score["depth_mm"]["p999"], score["depth_mm"]["worst"].get<double>() + 5e-4);
+  EXPECT_LT(score["depth_mm"]["worst"], 0.15) << "and the slab's corners are no deeper";
+  EXPECT_EQ(score["depth_mm"]["searched"], 2);
+  const auto& deepest = score["deepest"];
+  EXPECT_NEAR(deepest["depth_mm"].get<double>(), score["depth_mm"]["worst"].get<double>(), 1e-4);
+  const double layer_mm = 0.102;
+  EXPECT_NEAR(deepest["at_mm"][2].get<double>(), (deepest["layer"].get<int>() + 0.5) * layer_mm,
+              layer_mm / 2);
+}
+
+TEST_F(ScoreVerb, SaysThatAPrintFarFromItsModelIsMoreThanTwoMillimetersOff) {
+  // The model that is named is another one than was sliced: a small cube where a slab is printed.
+  models::write_obj(models::box({0, 0, 0}, {0.5, 0.5, 0.5}), file("cube.obj"));
+  const auto score = run({"score", file("pin.bjob"), "--target", file("cube.obj")});
+  EXPECT_EQ(score["depth_mm"]["worst"], score["depth_mm"]["searched"]);
+  EXPECT_EQ(score["deepest"]["kind"], "thick") << "the lowest of the slab's corners";
+}
+
 TEST_F(ScoreVerb, ListsItWithItsPlaceAndDrawsIt) {
   run({"score", file("pin.bjob"), "--target", file("pin.obj"), "--map", file("map")});
   std::ifstream text(file("map/features.json"));
