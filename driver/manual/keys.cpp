@@ -352,9 +352,13 @@ const std::map<std::string, std::vector<KeyTable> (*)()>& pages() {
       {"check",
        [] {
          return std::vector{result(
-             Keys{{"verdict", "prints as it is, loses detail, doubtful size or nothing to print"}} +
+             Keys{{"verdict",
+                   "nothing to print, doubtful size, nothing of it prints, or what it does: prints "
+                   "as it is, prints too thin (too thick) in places, loses detail, closes gaps, "
+                   "leaves crumbs, comes apart, joins parts that are apart, keeps powder inside; "
+                   "several as a person would list them"}} +
              faults() + Keys{{"trapped", "number of pockets that trap powder"}} +
-             within("found[]", place_of_fault()) +
+             within("found[]", place_of_fault()) + within("worst_places[]", wrong_place()) +
              Keys{{"excess",
                    "wrong voxels beyond the layers' height, as a share of the "
                    "part's"}} +

@@ -66,16 +66,20 @@ nlohmann::ordered_json located(const WrongPlace& place, const std::array<double,
           {"depth_mm", rounded(place.depth_mm)}};
 }
 
-std::string place_text(const nlohmann::ordered_json& located) {
-  const auto& at = located["at_mm"];
+std::string wrong_text(const nlohmann::ordered_json& located) {
   static const std::map<std::string, const char*> words = {{"lost", "into what is lost"},
                                                            {"fused", "into a gap that is fused"},
                                                            {"thin", "too thin"},
                                                            {"thick", "too thick"}};
-  return fmt::format("{} {} at {:.1f}, {:.1f}, {:.1f} mm, layer {}",
-                     depth_text(located["depth_mm"].get<double>()),
-                     words.at(located["kind"].get<std::string>()), at[0].get<double>(),
-                     at[1].get<double>(), at[2].get<double>(), located["layer"].get<int>());
+  return depth_text(located["depth_mm"].get<double>()) + " " +
+         words.at(located["kind"].get<std::string>());
+}
+
+std::string place_text(const nlohmann::ordered_json& located) {
+  const auto& at = located["at_mm"];
+  return fmt::format("{} at {:.1f}, {:.1f}, {:.1f} mm, layer {}", wrong_text(located),
+                     at[0].get<double>(), at[1].get<double>(), at[2].get<double>(),
+                     located["layer"].get<int>());
 }
 
 }  // namespace binderjet

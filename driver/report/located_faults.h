@@ -56,8 +56,9 @@ nlohmann::ordered_json located(std::string_view kind, const Region& region,
 // A wrong voxel: what it is, where on the bed, in which layer, how deep.
 nlohmann::ordered_json located(const WrongPlace& place, const std::array<double, 3>& origin_mm,
                                const Grid& grid);
-// The same for a person, of what located() gives: "0.640 mm too thin at 101.5, 127.0, 3.2 mm, layer
-// 31".
+// For a person, of what located() gives: "0.640 mm too thin", and with the place: "0.640 mm too
+// thin at 101.5, 127.0, 3.2 mm, layer 31".
+std::string wrong_text(const nlohmann::ordered_json& located);
 std::string place_text(const nlohmann::ordered_json& located);
 
 }  // namespace binderjet

@@ -1,9 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// check PART... -p PROFILE: what a print would lose, fuse and trap, before any powder is spent.
+// check PART... -p PROFILE, or check JOB: what a print would lose, fuse and trap, before any powder
+// is spent.
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
-#include <map>
+#include <algorithm>
+#include <bit>
+#include <filesystem>
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <string>
@@ -12,13 +15,15 @@
 #include <vector>
 
 #include "driver/job/estimate.h"
+#include "driver/job/mask_source.h"
+#include "driver/job/parts.h"
 #include "driver/job/print_stream.h"
 #include "driver/job/slice_plan.h"
-#include "driver/report/located_faults.h"
+#include "driver/report/findings.h"
 #include "driver/verbs/verbs.h"
+#include "slicer/base/error.h"
 #include "slicer/model/printer_model.h"
 #include "slicer/score/score.h"
-#include "slicer/score/trapped_powder.h"
 #include "slicer/voxels/voxelize.h"
 
 namespace binderjet {
@@ -26,167 +31,147 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-constexpr std::size_t kMaxNamed = 100;  // with --json
-constexpr std::size_t kMaxTold = 8;     // to a person, of each kind
-
-// How to say what is found.
-struct Saying {
-  std::string_view word;
-  const char* one;
-  const char* many;
-  const char* meaning;
+// What is checked, whether it is sliced for that or read from a job.
+struct Print {
+  JobHeader header;
+  std::shared_ptr<const Mesh> mesh;
+  LayerRange layers;
+  std::unique_ptr<Stream<RunLayer>> printed;
+  std::shared_ptr<MaskTally> tally;  // of the masks, as they pass
+  std::vector<std::string> warnings;
+  bool doubtful_size = false;
 };
 
-Saying saying(FaultKind kind) {
-  switch (kind) {
-    case FaultKind::kLost:
-      return {word(kind), "feature lost", "features lost", "too thin to come out of the powder"};
-    case FaultKind::kFused:
-      return {word(kind), "gap fused", "gaps fused", "too narrow to stay open"};
-    case FaultKind::kSpurious:
-      return {word(kind), "spurious crumb", "spurious crumbs",
-              "printed where the part has nothing"};
-    case FaultKind::kLoose:
-      return {word(kind), "loose piece", "loose pieces",
-              "nothing printed holds them to their part"};
-    case FaultKind::kJoined:
-      break;
+Print print_of_parts(const SliceOptions& options, const Console& console) {
+  if (options.profile.empty()) {
+    throw Error(ErrorKind::kUsage, "check", "needs a printer for models: -p PROFILE");
   }
-  return {word(kind), "bridge joins parts", "bridges join parts", "printed where they are apart"};
-}
-
-// No fault of the masks: it is printed as it was wanted.
-constexpr Saying kTrapped{"trapped", "pocket traps powder", "pockets trap powder",
-                          "no way out for the powder in it"};
-
-// All of a kind: how many, and where the largest are.
-struct Kind {
-  std::int64_t count = 0;
-  LargestOf<Region> regions;
-
-  void add(const Region& region) {
-    ++count;
-    regions.add(region);
-  }
-};
-
-struct Checked {
-  std::map<FaultKind, Kind> faults;
-  Kind trapped;
-  Totals totals;
-  double excess = 0;
-};
-
-Checked check_plan(const SlicePlan& plan, const Console& console) {
-  const JobHeader& header = plan.header;
-  const Work work = console.work();
-  const LayerRange all{0, header.layers()};
-  const auto model = std::make_shared<const PrinterModel>(header.profile.effects, header.grid,
-                                                          place_of(header.box, header.grid));
-  const auto tally = std::make_shared<MaskTally>();
-  const auto layers = score_layers(voxelize(plan.mesh, header.grid, header.box, all),
-                                   printed_job(header, plan.mesh, model, tally, work).all_layers(),
-                                   header.grid, all);
-  Checked checked;
-  Scorer scorer(header.grid, 0);
-  TrappedPowder powder;
-  const auto take = [&](const std::vector<Fault>& faults) {
-    for (const Fault& fault : faults) checked.faults[fault.kind].add(fault.region);
-  };
-  Stage stage(work, "checking", header.layers(), "layers");
-  while (layers->rest().size() > 0) {
-    for (const Shared<LayerScore>& layer : layers->next(kBlockLayers)) {
-      take(scorer.add(*layer));
-      for (const Region& pocket : powder.add(*layer->layer.printed)) {
-        checked.trapped.add(in_slices(pocket, header.grid.detail_vx[2]));
-      }
-      ++checked.totals.layers;
-    }
-    stage.reach(checked.totals.layers);
-  }
-  const JobScore score = scorer.finish();
-  take(score.last_faults);
-  checked.excess = score.voxels.excess();
-  checked.totals.mask_px = tally->pixels;
-  checked.totals.rules = tally->rules;
-  checked.totals.target_vx = score.voxels.solid;
-  return checked;
-}
-
-std::string place_text(const Json& found) {
-  return fmt::format("  at {:.1f}, {:.1f}, {:.1f} mm, {:.2f} x {:.2f} x {:.2f} mm, layers {} to {}",
-                     found["at_mm"][0].get<double>(), found["at_mm"][1].get<double>(),
-                     found["at_mm"][2].get<double>(), found["size_mm"][0].get<double>(),
-                     found["size_mm"][1].get<double>(), found["size_mm"][2].get<double>(),
-                     found["layers"][0].get<int>(), found["layers"][1].get<int>() - 1);
-}
-
-enum class Verdict { kAsItIs, kLosesDetail, kDoubtfulSize, kNothingToPrint };
-
-const char* word(Verdict verdict) {
-  switch (verdict) {
-    case Verdict::kAsItIs:
-      return "prints as it is";
-    case Verdict::kLosesDetail:
-      return "loses detail";
-    case Verdict::kDoubtfulSize:
-      return "doubtful size";
-    case Verdict::kNothingToPrint:
-      break;
-  }
-  return "nothing to print";
-}
-
-Verdict verdict_on(const Checked& checked, bool doubtful_size) {
-  if (checked.totals.target_vx == 0) return Verdict::kNothingToPrint;
-  if (doubtful_size) return Verdict::kDoubtfulSize;
-  const bool sound = checked.faults.empty() && checked.trapped.count == 0;
-  return sound ? Verdict::kAsItIs : Verdict::kLosesDetail;
-}
-
-void check(const SliceOptions& options, const Console& console) {
   SlicePlan plan = plan_slices(options, console);
-  const JobHeader& header = plan.header;
-  Checked checked = check_plan(plan, console);
-  const std::string changed = rule_warning(checked.totals.rules, header.profile.mask);
+  Print print;
+  const auto model = std::make_shared<const PrinterModel>(
+      plan.header.profile.effects, plan.header.grid, place_of(plan.header.box, plan.header.grid));
+  print.tally = std::make_shared<MaskTally>();
+  print.printed =
+      printed_job(plan.header, plan.mesh, model, print.tally, console.work()).all_layers();
+  print.layers = {0, plan.header.layers()};
+  print.header = std::move(plan.header);
+  print.mesh = std::move(plan.mesh);
+  print.warnings = std::move(plan.warnings);
+  print.doubtful_size = plan.doubtful_size;
+  return print;
+}
+
+// The masks of a job, whose pixels are counted as they are read.
+MaskSource counted(MaskSource job, std::shared_ptr<MaskTally> tally) {
+  job.packed = [packed = std::move(job.packed), tally = std::move(tally)](int index) {
+    std::vector<std::byte> bits = packed(index);
+    for (const std::byte byte : bits) {
+      tally->pixels += std::popcount(std::to_integer<unsigned char>(byte));
+    }
+    return bits;
+  };
+  return job;
+}
+
+// Nothing is sliced: the job's masks are printed as they are, by its own printer or by another.
+// `job` and `model` must outlive the print.
+Print print_of_job(const MaskSource& job, const PrinterModel& model, const JobHeader& header,
+                   std::shared_ptr<MaskTally> tally, const Console& console) {
+  Print print;
+  print.header = header;
+  print.mesh =
+      reload_parts(header, std::filesystem::path(job.path).parent_path().string(), console.work());
+  print.layers = job.layers();
+  print.printed = printed_stream(job, model, console.work());
+  print.tally = std::move(tally);
+  if (print.layers != LayerRange{0, header.layers()}) {
+    print.warnings.push_back(fmt::format(
+        "{}: holds layers {} to {} of {}; nothing is said of the others, and what is cut "
+        "there may look loose",
+        job.path, print.layers.first, print.layers.last - 1, header.layers()));
+    console.warning(print.warnings.back());
+  }
+  return print;
+}
+
+std::string verdict_on(const Findings& findings, bool doubtful_size) {
+  if (findings.score().voxels.solid == 0) return "nothing to print";
+  if (doubtful_size) return "doubtful size";
+  return findings.verdict();
+}
+
+void check(Print print, const Console& console) {
+  const JobHeader& header = print.header;
+  Findings findings(header.grid, header.origin_mm(), print.layers.first);
+  {
+    const auto layers =
+        score_layers(voxelize(print.mesh, header.grid, header.box,
+                              target_around(print.layers, header.grid, header.layers())),
+                     std::move(print.printed), header.grid, print.layers);
+    Stage stage(console.work(), "checking", print.layers.size(), "layers");
+    while (layers->rest().size() > 0) {
+      for (const Shared<LayerScore>& layer : layers->next(kBlockLayers)) findings.add(*layer);
+      stage.reach(layers->rest().first - print.layers.first);
+    }
+  }
+  findings.finish();
+  const VoxelCounts& voxels = findings.score().voxels;
+  Totals totals;
+  totals.layers = print.layers.size();
+  totals.mask_px = print.tally->pixels;
+  totals.target_vx = voxels.solid;
+  totals.rules = print.tally->rules;
+  const std::string changed = rule_warning(totals.rules, header.profile.mask);
   if (!changed.empty()) {
     console.warning(changed);
-    plan.warnings.push_back(changed);
+    print.warnings.push_back(changed);
   }
-  const std::string verdict = word(verdict_on(checked, plan.doubtful_size));
-  const std::array<double, 3> origin_mm = {header.box.bed_px[0] * header.grid.pitch_mm[0],
-                                           header.box.bed_px[1] * header.grid.pitch_mm[1], 0};
-
+  const std::string verdict = verdict_on(findings, print.doubtful_size);
+  const Estimate estimate = estimate_of(header, totals);
   Json json = {{"verdict", verdict}};
-  Json all = Json::array();
-  std::string text;
-  const auto tell = [&](const Saying& say, const Kind& kind) {
-    json[std::string(say.word)] = kind.count;
-    if (kind.count == 0) return;
-    text +=
-        fmt::format("{} {} ({}):\n", kind.count, kind.count == 1 ? say.one : say.many, say.meaning);
-    std::size_t told = 0;
-    for (const Region& region : kind.regions.largest(kMaxNamed)) {
-      all.push_back(located(say.word, region, origin_mm, header.grid));
-      if (told++ < kMaxTold) text += place_text(all.back()) + "\n";
-    }
-    const std::int64_t untold = kind.count - static_cast<std::int64_t>(kMaxTold);
-    if (untold > 0) text += fmt::format("  and {} smaller ones\n", untold);
-  };
-  for (const FaultKind kind : kFaultKinds) tell(saying(kind), checked.faults[kind]);
-  tell(kTrapped, checked.trapped);
-  json["found"] = std::move(all);
-  json["excess"] = checked.excess;
-  const Estimate estimate = estimate_of(header, checked.totals);
+  json.update(findings.to_json());
+  json["excess"] = voxels.excess();
   json["print_minutes"] = estimate.print_minutes;
   json["binder_ml"] = estimate.binder_ml;
   json["powder_ml"] = estimate.powder_ml;
-  json["warnings"] = plan.warnings;
-  text += fmt::format("{:.2f} % of the part's voxels will be wrong beyond the layers' height\n",
-                      100 * checked.excess);
-  text += text_of(estimate, header);
-  text += fmt::format("\nverdict: {}", verdict);
+  json["warnings"] = print.warnings;
+  const std::string text = fmt::format(
+      "{}{:.2f} % of the part's voxels will be wrong beyond the layers' height\n{}\nverdict: {}",
+      findings.text(), 100 * voxels.excess(), text_of(estimate, header), verdict);
   console.result(json, text);
+}
+
+bool is_job(const std::string& file) { return std::filesystem::path(file).extension() == ".bjob"; }
+
+// What says how to slice has nothing to say of a job.
+void refuse_slice_options(const CLI::App& verb, const std::string& job) {
+  constexpr std::array<std::string_view, 5> kOfAJob{"PART", "--profile", "--json", "--quiet",
+                                                    "--help"};
+  for (const CLI::Option* option : verb.get_options()) {
+    const std::string name = option->get_name();
+    if (option->count() == 0 || std::find(kOfAJob.begin(), kOfAJob.end(), name) != kOfAJob.end()) {
+      continue;
+    }
+    throw Error(ErrorKind::kUsage, name,
+                fmt::format("is for models; {} is sliced already, slice it again", job));
+  }
+}
+
+void run(const SliceOptions& options, const CLI::App& verb, const Console& console) {
+  if (std::none_of(options.parts.begin(), options.parts.end(), is_job)) {
+    check(print_of_parts(options, console), console);
+    return;
+  }
+  if (options.parts.size() > 1) {
+    throw Error(ErrorKind::kUsage, "check", "takes one job, or models; not both");
+  }
+  refuse_slice_options(verb, options.parts.front());
+  const auto tally = std::make_shared<MaskTally>();
+  const MaskSource job = counted(open_job(options.parts.front(), console), tally);
+  JobHeader header = *job.header;
+  if (!options.profile.empty()) header.profile = load_profile(options.profile);
+  const PrinterModel model(header.profile.effects, header.grid, job.place());
+  check(print_of_job(job, model, header, tally, console), console);
 }
 
 }  // namespace
@@ -195,12 +180,15 @@ void add_check_verb(CLI::App& program) {
   CLI::App* verb = program.add_subcommand(
       "check", "say what a print would lose, fuse and trap, before any powder is spent");
   auto options = std::make_shared<SliceOptions>();
-  verb->add_option("PART", options->parts, "models: STL, PLY, OBJ, OFF, 3MF, glTF and others")
+  verb->add_option("PART", options->parts,
+                   "models: STL, PLY, OBJ, OFF, 3MF, glTF and others; or a job (.bjob), which is "
+                   "not sliced again")
       ->required();
-  verb->add_option("-p,--profile", options->profile, "a printer profile's name or path")
-      ->required();
+  verb->add_option("-p,--profile", options->profile,
+                   "a printer profile's name or path; for a job, another printer than its own");
   add_slice_options(*verb, *options);
-  verb->callback([options, console = add_console_options(*verb)] { check(*options, *console); });
+  verb->callback(
+      [options, verb, console = add_console_options(*verb)] { run(*options, *verb, *console); });
 }
 
 }  // namespace binderjet

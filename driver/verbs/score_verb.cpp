@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// score JOB --target PART: how far the predicted print is from the model that was wanted.
+// score JOB [--target PART]: how far the predicted print is from the model that was wanted.
 #include <fmt/format.h>
 #include <oneapi/tbb/parallel_for.h>
 
 #include <CLI/CLI.hpp>
+#include <filesystem>
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <optional>
@@ -31,22 +32,33 @@ struct ScoreOptions {
   bool compare = false;
 };
 
-// The target as the job placed its own parts, read from the files named now.
-std::shared_ptr<const Mesh> load_target(const ScoreOptions& options, const JobHeader& header,
-                                        const Work& work) {
+struct Target {
+  std::shared_ptr<const Mesh> mesh;
+  bool is_sliced = true;  // the job was sliced from these very files
+};
+
+// The job's own models, or what is named in their place, placed as they are.
+Target load_target(const ScoreOptions& options, const JobHeader& header, const Work& work) {
+  if (options.targets.empty()) {
+    const std::string folder = std::filesystem::path(options.job).parent_path().string();
+    return {reload_parts(header, folder, work)};
+  }
   if (options.targets.size() != header.sources.size()) {
     throw Error(ErrorKind::kUsage, "--target",
                 fmt::format("the job has {} parts; name each of them, in its order",
                             header.sources.size()));
   }
+  Target target;
   std::vector<Part> parts;
   for (std::size_t i = 0; i < options.targets.size(); ++i) {
     const Source& source = header.sources[i];
     parts.push_back(
         load_part(options.targets[i], source.placement.unit_mm, source.placement, false, work));
+    target.is_sliced = target.is_sliced && parts.back().source.hash == source.hash;
     parts.back().source.corner_px = source.corner_px;
   }
-  return std::make_shared<const Mesh>(merge_parts(std::move(parts), header.grid));
+  target.mesh = std::make_shared<const Mesh>(merge_parts(std::move(parts), header.grid));
+  return target;
 }
 
 std::string edge_text(const EdgeErrors& edges) {
@@ -101,7 +113,7 @@ void score(const ScoreOptions& options, const Console& console) {
   const std::vector<PrinterModel> models =
       process_window(profile.effects, header.grid, job.place());
   const Work work = console.work();
-  const auto target = load_target(options, header, work);
+  const Target target = load_target(options, header, work);
 
   std::optional<ScoreMap> map;
   if (!options.map.empty()) map.emplace(options.map, job, header.grid);
@@ -115,7 +127,7 @@ void score(const ScoreOptions& options, const Console& console) {
     done += static_cast<int>(layers.size());
     map->add(ended);
   };
-  const ScoreSheet own = score_masks(job, header, target, models, work, draw);
+  const ScoreSheet own = score_masks(job, header, target.mesh, models, work, draw);
   if (map) map->finish(own.score);
 
   nlohmann::ordered_json json = to_json(own);
@@ -129,8 +141,11 @@ void score(const ScoreOptions& options, const Console& console) {
       const std::string enhance = word(each);
       other.enhance = each;
       const Stage stage(work, enhance);
-      const MaskSource masks = enhanced_masks(job, other, target, work);
-      const ScoreSheet sheet = score_masks(masks, header, target, models, work);
+      // What the job holds is not made again.
+      const bool is_own = each == header.enhance && options.profile.empty() && target.is_sliced;
+      const ScoreSheet sheet = is_own ? own
+                                      : score_masks(enhanced_masks(job, other, target.mesh, work),
+                                                    header, target.mesh, models, work);
       json["compare"][enhance] = to_json(sheet);
       text += table_row(enhance, sheet);
     }
@@ -145,9 +160,9 @@ void add_score_verb(CLI::App& program) {
       program.add_subcommand("score", "compare a job's predicted print with its model");
   auto options = std::make_shared<ScoreOptions>();
   verb->add_option("JOB", options->job, "a job (.bjob)")->required();
-  verb->add_option("--target", options->targets,
-                   "the model that is wanted, one per part of the job")
-      ->required();
+  verb->add_option(
+      "--target", options->targets,
+      "the model that is wanted, one per part of the job; else what it was sliced from");
   verb->add_option("-p,--profile", options->profile, "another printer than the job's own");
   verb->add_option(
       "--map", options->map,

@@ -31,6 +31,8 @@ void columns_with(const VoxelLayer& target, int y, int most, std::vector<int>& o
 
 }  // namespace
 
+bool is_missing(WrongKind kind) { return kind == WrongKind::kLost || kind == WrongKind::kThin; }
+
 std::string_view word(WrongKind kind) {
   switch (kind) {
     case WrongKind::kLost:
@@ -47,7 +49,8 @@ std::string_view word(WrongKind kind) {
 
 bool deeper(const WrongPlace& a, const WrongPlace& b) {
   const auto key = [](const WrongPlace& place) {
-    return std::tuple(-place.depth_mm, place.voxel[2], place.voxel[1], place.voxel[0]);
+    return std::tuple(-place.depth_mm, static_cast<int>(place.kind), place.voxel[2], place.voxel[1],
+                      place.voxel[0]);
   };
   return key(a) < key(b);
 }
@@ -73,7 +76,7 @@ Depths& Depths::operator+=(const Depths& other) {
 }
 
 Depths::Cell Depths::cell_of(const WrongPlace& wrong) const {
-  Cell cell{static_cast<int>(wrong.kind), 0, 0, 0};
+  Cell cell{is_missing(wrong.kind) ? 0 : 1, 0, 0, 0};
   for (std::size_t axis = 0; axis < 3; ++axis) {
     cell[axis + 1] = static_cast<int>(wrong.voxel[axis] * voxel_mm_[axis] / kCellMm);
   }

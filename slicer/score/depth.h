@@ -37,6 +37,7 @@ namespace binderjet {
 // Wrong voxels of a lost feature, of a fused gap, and else of a part that is thinner or thicker
 // than it should be.
 enum class WrongKind { kLost, kFused, kThin, kThick };
+bool is_missing(WrongKind kind);  // else extra
 std::string_view word(WrongKind kind);
 
 struct WrongPlace {
@@ -44,7 +45,7 @@ struct WrongPlace {
   std::array<int, 3> voxel{};  // x, y and slice, from those of layer 0
   WrongKind kind = WrongKind::kLost;
 };
-// By depth, then by place, from the lowest.
+// By depth; of equals what is lost or fused first, then the lowest.
 bool deeper(const WrongPlace& a, const WrongPlace& b);
 
 // The depths of wrong voxels; they add up over layers, from the lowest on.
@@ -62,18 +63,18 @@ class Depths {
   std::int64_t count() const { return count_; }  // of the voxels that count
   // The least depth that 99.9 % of the voxels do not exceed, to 1 um; 0 without any.
   double p999_mm() const;
-  // The deepest voxel, the lowest of several; none if no voxel counts.
+  // The first by deeper(); none if no voxel counts.
   const std::optional<WrongPlace>& worst() const { return worst_; }
   // What is not as deep is not worth a name: the largest side of a pixel of a layer, in mm.
   double named_mm() const { return named_mm_; }
-  // At most `most` places that are deeper than named_mm(), the deepest first. Those of one kind
-  // that hang together in steps of a millimeter are one place, its deepest voxel.
+  // At most `most` places that are deeper than named_mm(), the deepest first. What is missing and
+  // hangs together in steps of a millimeter is one place, its deepest voxel; so is what is extra.
   std::vector<WrongPlace> places(std::size_t most) const;
 
  private:
   static constexpr double kCellMm = 1;
   static constexpr std::size_t kMaxCells = 20000;  // memory: two million bytes
-  // What hangs together: a kind, and a cube of kCellMm.
+  // What hangs together: missing or extra, and a cube of kCellMm.
   using Cell = std::array<int, 4>;
 
   Cell cell_of(const WrongPlace& wrong) const;

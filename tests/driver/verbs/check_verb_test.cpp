@@ -3,6 +3,9 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <cmath>
+#include <fstream>
+
 #include "tests/support/models.h"
 #include "tests/support/program.h"
 
@@ -14,13 +17,10 @@ using testing::HasSubstr;
 
 class CheckVerb : public testing::Test {
  protected:
-  nlohmann::json check(const Mesh& mesh, const std::vector<std::string>& more = {}) const {
+  nlohmann::json check(const Mesh& mesh, const std::string& enhance = "none") const {
     models::write_obj(mesh, here_ / "part.obj");
-    std::vector<std::string> words = {
-        "check", here_ / "part.obj", "-p", "z450", "--enhance", "none", "--at", "50,50"};
-    words.insert(words.end(), more.begin(), more.end());
-    words.emplace_back("--json");
-    const Ran ran = here_.run(words);
+    const Ran ran = here_.run({"check", here_ / "part.obj", "-p", "z450", "--at", "50,50",
+                               "--enhance", enhance, "--json"});
     EXPECT_EQ(ran.status, 0) << ran.err;
     return ran.json();
   }
@@ -51,6 +51,7 @@ TEST_F(CheckVerb, HasNothingToSayOfASolidBlock) {
   const nlohmann::json said = check(block(0, 0, false));
   EXPECT_EQ(said["verdict"], "prints as it is");
   EXPECT_TRUE(said["found"].empty());
+  EXPECT_TRUE(said["worst_places"].empty()) << "its corners are round by less than a pixel";
   EXPECT_NEAR(said["powder_ml"].get<double>(), 0.4, 0.01);
   EXPECT_NEAR(said["binder_ml"].get<double>(), 0.4 * 0.36, 0.01);
   EXPECT_NEAR(said["print_minutes"].get<double>(), 90 + 40 / 3.0, 1);  // 40 layers, 3 a minute
@@ -82,6 +83,7 @@ TEST_F(CheckVerb, NamesAPocketThatKeepsItsPowder) {
   EXPECT_EQ(said["trapped"], 1);
   const auto& pocket = said["found"][0];
   EXPECT_EQ(pocket["kind"], "trapped");
+  EXPECT_EQ(said["verdict"], "prints as it is and keeps powder inside") << "no detail is lost";
   EXPECT_NEAR(pocket["volume_mm3"].get<double>(), 32, 2);
 }
 
@@ -90,7 +92,7 @@ TEST_F(CheckVerb, NamesTheBridgeThatJoinsTwoParts) {
   Mesh bars = models::joined(box({0, 0, 0}, {3, 10, 2}), box({3.15, 4, 0}, {6, 6, 2}));
   const nlohmann::json said = check(bars);
   EXPECT_EQ(said["joined"], 1);
-  EXPECT_EQ(said["verdict"], "loses detail");
+  EXPECT_EQ(said["verdict"], "closes gaps and joins parts that are apart");
   const auto& bridge = only(said, "joined");
   EXPECT_NEAR(bridge["at_mm"][0].get<double>(), 53.07, 0.1);
   EXPECT_NEAR(bridge["at_mm"][1].get<double>(), 55, 0.1);
@@ -107,11 +109,94 @@ TEST_F(CheckVerb, NamesALoosePiece) {
   const nlohmann::json said =
       check(models::joined(blocks, box({3.9, 1.97, 0.5}, {6.1, 2.02, 1.5})));
   EXPECT_EQ(said["loose"], 1);
+  EXPECT_EQ(said["verdict"], "loses detail and comes apart");
   const auto& piece = only(said, "loose");  // the lesser
   EXPECT_NEAR(piece["at_mm"][0].get<double>(), 57.5, 0.15);
   EXPECT_NEAR(piece["size_mm"][0].get<double>(), 3, 0.2);
   EXPECT_EQ(piece["layers"], nlohmann::json({0, 20}));
   EXPECT_EQ(check(models::joined(blocks, box({3.9, 0, 0}, {6.1, 4, 2})))["loose"], 0);
+}
+
+// Needs plates that print 0.5 mm thick or more, so that one of 0.4 mm is wrong in its middle.
+Ran check_of_thin_plates(const Workplace& here, const std::vector<std::string>& more) {
+  const Mesh plates = models::joined(box({0, 0, 0}, {0.4, 3, 0.5}), box({4, 0, 0}, {4.3, 3, 0.5}));
+  models::write_obj(models::joined(plates, box({8, 0, 0}, {10, 3, 0.5})), here / "plates.obj");
+  std::string profile = here.text(BINDERJET_SOURCE_DIR "/profiles/z450.toml");
+  std::ofstream(here / "coarse.toml") << profile << R"(
+[[effects]]
+kind = "survive"
+width_mm = [0.5, 0.5]
+)";
+  std::vector<std::string> words = {
+      "check", here / "plates.obj", "-p", here / "coarse.toml", "--enhance", "none", "--at",
+      "50,50"};
+  words.insert(words.end(), more.begin(), more.end());
+  return here.run(words);
+}
+
+TEST_F(CheckVerb, NamesTheWorstPlacesTheDeepestFirst) {
+  const Ran ran = check_of_thin_plates(here_, {"--json"});
+  ASSERT_EQ(ran.status, 0) << ran.err;
+  const nlohmann::json said = ran.json();
+  const auto& places = said["worst_places"];
+  ASSERT_EQ(places.size(), 2) << "each plate once";
+  // From the middle of a plate to its sides it is half its width, less at most half a voxel.
+  const double voxel_mm = 25.4 / 600;
+  EXPECT_EQ(places[0]["kind"], "lost");
+  EXPECT_NEAR(places[0]["depth_mm"].get<double>(), 0.2, voxel_mm);
+  EXPECT_NEAR(places[0]["at_mm"][0].get<double>(), 50.2, 2 * voxel_mm);
+  EXPECT_NEAR(places[1]["depth_mm"].get<double>(), 0.15, voxel_mm);
+  EXPECT_NEAR(places[1]["at_mm"][0].get<double>(), 54.15, 2 * voxel_mm);
+  for (const auto& place : places) {
+    EXPECT_EQ(place["layer"], std::floor(place["at_mm"][2].get<double>() / 0.102));
+  }
+  EXPECT_THAT(check_of_thin_plates(here_, {}).out, HasSubstr(" mm into what is lost at 50.2, 50."));
+}
+
+TEST_F(CheckVerb, ReadsAJobInsteadOfSlicingItAgain) {
+  models::write_obj(block(0.2, 0.2, true), here_ / "part.obj");
+  const std::string job = here_ / "part.bjob";
+  ASSERT_EQ(here_
+                .run({"slice", here_ / "part.obj", "-p", "z450", "--enhance", "paper", "--at",
+                      "50,50", "-o", job, "-q"})
+                .status,
+            0);
+  nlohmann::json of_part = check(block(0.2, 0.2, true), "paper");
+  nlohmann::json of_job = here_.run({"check", job, "--json"}).json();
+  EXPECT_GT(of_part["lost"], 0);
+  EXPECT_GT(of_part["trapped"], 0);
+  of_part.erase("warnings");  // of the mesh: said when it was sliced
+  of_job.erase("warnings");
+  EXPECT_EQ(of_job, of_part);
+
+  const Ran sized = here_.run({"check", job, "--size", "20"});
+  EXPECT_EQ(sized.status, 2);
+  EXPECT_THAT(sized.err, HasSubstr("--size: is for models"));
+  EXPECT_EQ(here_.run({"check", job, here_ / "part.obj", "-p", "z450"}).status, 2);
+  EXPECT_EQ(here_.run({"check", here_ / "part.obj"}).status, 2) << "without a printer";
+  std::ofstream(here_ / "part.obj", std::ios::app) << "# changed\n";
+  const Ran changed = here_.run({"check", job});
+  EXPECT_EQ(changed.status, 3);
+  EXPECT_THAT(changed.err, HasSubstr("has changed since this job was made"));
+}
+
+TEST_F(CheckVerb, SaysWhichLayersOfAShareItKnows) {
+  models::write_obj(block(0, 0, true), here_ / "part.obj");
+  ASSERT_EQ(here_
+                .run({"slice", here_ / "part.obj", "-p", "z450", "--enhance", "none", "--layers",
+                      "5:35", "-o", here_ / "share.bjob", "-q"})
+                .status,
+            0);
+  const Ran ran = here_.run({"check", here_ / "share.bjob", "--json"});
+  EXPECT_THAT(ran.err, HasSubstr("holds layers 5 to 34 of 40"));
+  const nlohmann::json said = ran.json();
+  EXPECT_EQ(said["trapped"], 1);
+  EXPECT_EQ(only(said, "trapped")["layers"], nlohmann::json({10, 29}))
+      << "from the job's first layer";
+}
+
+TEST_F(CheckVerb, SaysThatNothingPrints) {
+  EXPECT_EQ(check(box({0, 0, 0}, {0.1, 4, 1}))["verdict"], "nothing of it prints");
 }
 
 TEST_F(CheckVerb, NamesTheLikelyUnitOfAPartThatIsTooSmallOrTooLarge) {

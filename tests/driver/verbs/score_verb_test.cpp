@@ -75,12 +75,19 @@ TEST_F(ScoreVerb, TellsHowDeepThePinIsWrongAndWhere) {
               layer_mm / 2);
 }
 
+TEST_F(ScoreVerb, TakesTheModelThatTheJobWasSlicedFromIfNoneIsNamed) {
+  EXPECT_EQ(run({"score", file("pin.bjob")}),
+            run({"score", file("pin.bjob"), "--target", file("pin.obj")}));
+  fs::remove(file("pin.obj"));
+  EXPECT_THROW(run({"score", file("pin.bjob")}), Error);
+}
+
 TEST_F(ScoreVerb, SaysThatAPrintFarFromItsModelIsMoreThanTwoMillimetersOff) {
   // The model that is named is another one than was sliced: a small cube where a slab is printed.
   models::write_obj(models::box({0, 0, 0}, {0.5, 0.5, 0.5}), file("cube.obj"));
   const auto score = run({"score", file("pin.bjob"), "--target", file("cube.obj")});
   EXPECT_EQ(score["depth_mm"]["worst"], score["depth_mm"]["searched"]);
-  EXPECT_EQ(score["deepest"]["kind"], "thick") << "the lowest of the slab's corners";
+  EXPECT_EQ(score["deepest"]["kind"], "fused") << "of equals before what is thick";
 }
 
 TEST_F(ScoreVerb, ListsItWithItsPlaceAndDrawsIt) {
