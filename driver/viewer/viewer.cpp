@@ -16,9 +16,11 @@
 
 #include "driver/base/html.h"
 #include "driver/job/print_stream.h"
+#include "driver/report/findings.h"
 #include "driver/viewer/run_codec.h"
 #include "driver/viewer/viewer_page.h"
 #include "slicer/model/printer_model.h"
+#include "slicer/score/score.h"
 #include "slicer/stack/png.h"
 #include "slicer/voxels/slicing_operator.h"
 #include "slicer/voxels/voxelize.h"
@@ -102,13 +104,13 @@ nlohmann::ordered_json description(const MaskSource& job, bool target, int step)
       {"color_step", step}};
 }
 
-// What stands in a JSON script element must not end it.
-std::string inline_json(const nlohmann::ordered_json& json) {
+// A JSON script element; what stands in it must not end it.
+std::string json_script(const std::string& id, const nlohmann::ordered_json& json) {
   std::string text = json.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace);
   for (std::size_t at = 0; (at = text.find('<', at)) != std::string::npos;) {
     text.replace(at, 1, "\\u003c");
   }
-  return text;
+  return fmt::format("<script type=\"application/json\" id=\"{}\">{}</script>\n", id, text);
 }
 
 // Packs the layers of a chunk; see viewer.h.
@@ -150,30 +152,57 @@ class ChunkWriter {
   std::string text_;
 };
 
+// The layers that these are the score of, of which the findings hear.
+std::vector<ComparedLayer> compared(const std::vector<Shared<LayerScore>>& scores,
+                                    Findings& findings) {
+  std::vector<ComparedLayer> layers;
+  for (const Shared<LayerScore>& score : scores) {
+    findings.add(*score);
+    layers.push_back(score->layer);
+  }
+  return layers;
+}
+
+// Without a target.
+std::vector<ComparedLayer> alone(const std::vector<Shared<RunLayer>>& prints) {
+  std::vector<ComparedLayer> layers;
+  for (const Shared<RunLayer>& print : prints) layers.push_back({nullptr, print});
+  return layers;
+}
+
 std::string data(const MaskSource& job, const std::shared_ptr<const Mesh>& mesh, const Work& work) {
   const JobHeader& header = *job.header;
   const PrinterModel model(header.profile.effects, header.grid, job.place());
-  const auto printed = printed_stream(job, model, work);
-  const auto target = mesh ? voxelize(mesh, header.grid, header.box, job.layers()) : nullptr;
+  auto printed = printed_stream(job, model, work);
+  const auto scored =
+      mesh ? score_layers(voxelize(mesh, header.grid, header.box,
+                                   target_around(job.layers(), header.grid, header.layers())),
+                          std::move(printed), header.grid, job.layers())
+           : nullptr;
+  Findings findings(header.grid, header.origin_mm(), job.first);
   const auto plain = plain_print(job, mesh, model);
   const int step = color_step(job);
 
-  std::string page = fmt::format("<script type=\"application/json\" id=\"job\">{}</script>\n",
-                                 inline_json(description(job, mesh != nullptr, step)));
+  std::string page = json_script("job", description(job, mesh != nullptr, step));
   Stage stage(work, "drawing layers", job.size_px[2], "layers");
   int done = 0;
-  for (int number = 0; printed->rest().size() > 0; ++number) {
-    const auto prints = printed->next(kChunkLayers);
-    const auto targets = target ? target->next(kChunkLayers) : std::vector<Shared<VoxelLayer>>();
+  for (int number = 0; done < job.size_px[2]; ++number) {
+    const std::vector<ComparedLayer> layers = scored
+                                                  ? compared(scored->next(kChunkLayers), findings)
+                                                  : alone(printed->next(kChunkLayers));
     const auto plains = plain ? plain->next(kChunkLayers) : std::vector<Shared<RunLayer>>();
     ChunkWriter chunk(job);
-    for (std::size_t i = 0; i < prints.size(); ++i, ++done) {
-      chunk.add(target ? targets[i].get() : nullptr, job.read(done), *prints[i],
+    for (std::size_t i = 0; i < layers.size(); ++i, ++done) {
+      chunk.add(layers[i].target.get(), job.read(done), *layers[i].printed,
                 plain ? plains[i].get() : nullptr);
       if (step > 0) add_data(fmt::format("color{}", done), color_png(job, done, step), page);
     }
     add_data(fmt::format("chunk{}", number), deflated(chunk.text()), page);
     stage.reach(done);
+  }
+  if (scored) {
+    findings.finish();
+    page += json_script("places", findings.to_look_at());
   }
   return page;
 }

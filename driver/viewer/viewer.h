@@ -13,6 +13,8 @@
 //
 // For the first layer of a chunk the layer below is powder, so a chunk can be read by itself. Color
 // is a PNG for each layer, id="colorN", N from 0.
+//
+// With a target there is also id="places": what to look at first (Findings::to_look_at()), as JSON.
 #pragma once
 
 #include <memory>

@@ -7,6 +7,7 @@ const [rx, ry, rz] = job.detail_vx;
 const [nx, ny] = job.size_px;
 const voxels = [nx * rx, ny * ry];
 const kRuler = 26;  // CSS pixels
+const kMark = 16;   // likewise
 const compared = job.target && job.enhance !== 'none';  // plain masks are not what is sent
 const names = [
   ['target', 'Target', 'what we want'],
@@ -147,6 +148,7 @@ let zoom = 1;           // CSS pixels a mm
 let center = [0, 0];    // mm in the job's box
 const boxMm = [nx * job.pitch_mm[0], ny * job.pitch_mm[1]];
 const views = [];
+let mark = null;        // of the place that was flown to: mm in the job's box, and the layer
 
 // Every screen pixel becomes the mean of what it covers; where it covers less than a sample, that
 // sample, so that zoomed in the picture's own pixels are seen.
@@ -272,7 +274,20 @@ function draw() {
       drawRuns(view, image, left, top, mmPerPixel);
       context.putImageData(image, 0, 0);
     }
+    drawMark(context, ratio, left, top, mmPerPixel);
     drawRulers(context, [width, height], ratio, left, top, mmPerPixel);
+  }
+}
+// A ring around the place that was flown to, on a white one so that it shows on any picture.
+function drawMark(context, ratio, left, top, mmPerPixel) {
+  if (!mark || mark.layer !== index) return;
+  const [x, y] = [(mark.mm[0] - left) / mmPerPixel, (mark.mm[1] - top) / mmPerPixel];
+  for (const [width, color] of [[5, '#fff'], [2, '#d07a00']]) {
+    context.lineWidth = width * ratio;
+    context.strokeStyle = color;
+    context.beginPath();
+    context.arc(x, y, kMark * ratio, 0, 2 * Math.PI);
+    context.stroke();
   }
 }
 
@@ -319,10 +334,22 @@ function fit() {
   center = [boxMm[0] / 2, boxMm[1] / 2];
   draw();
 }
+function zoomWithin(wish) {
+  const most = 60 / Math.min(job.pitch_mm[0] / rx, job.pitch_mm[1] / ry);
+  return Math.min(most, Math.max(0.5, wish));
+}
+// Shows the layer and the surroundings of a place: twice what is wrong, and at least 4 mm.
+async function flyTo(place) {
+  const canvas = views[0].canvas;
+  center = [0, 1].map((axis) => place.at_mm[axis] - job.origin_mm[axis]);
+  zoom = zoomWithin(Math.min(canvas.clientWidth / Math.max(4, 2 * place.size_mm[0]),
+                             canvas.clientHeight / Math.max(4, 2 * place.size_mm[1])));
+  mark = {mm: center, layer: place.layer - job.first};
+  await show(mark.layer);
+}
 // Zooms so that the place under the pointer, or the middle, stays where it is.
 function zoomBy(factor, at) {
-  const most = 60 / Math.min(job.pitch_mm[0] / rx, job.pitch_mm[1] / ry);
-  const next = Math.min(most, Math.max(0.5, zoom * factor));
+  const next = zoomWithin(zoom * factor);
   at = at || center;
   for (let axis = 0; axis < 2; ++axis) {
     center[axis] = at[axis] + (center[axis] - at[axis]) * zoom / next;
@@ -345,7 +372,33 @@ function tellPlace(mm) {
     `z ${z} mm   pixel ${pixel[0]}, ${pixel[1]}, layer ${index + job.first}`;
 }
 
+// What to look at first, as a list to click.
+function buildPlaces() {
+  const data = document.getElementById('places');
+  const places = data ? JSON.parse(data.textContent) : [];
+  const nav = document.getElementById('list');
+  nav.hidden = places.length === 0;
+  for (const place of places) {
+    const button = document.createElement('button');
+    button.textContent = place.say;
+    const where = document.createElement('span');
+    where.className = 'faint';
+    where.textContent = `x ${place.at_mm[0].toFixed(1)}  y ${place.at_mm[1].toFixed(1)}  ` +
+      `z ${place.at_mm[2].toFixed(1)} mm, layer ${place.layer}`;
+    button.append(where);
+    button.addEventListener('click', () => {
+      for (const other of nav.querySelectorAll('button')) other.removeAttribute('aria-current');
+      button.setAttribute('aria-current', 'true');
+      flyTo(place);
+    });
+    const item = document.createElement('li');
+    item.append(button);
+    nav.querySelector('ol').append(item);
+  }
+}
+
 function build() {
+  buildPlaces();
   const main = document.getElementById('views');
   const columns = Math.min(names.length, 3);
   main.style.gridTemplate = `repeat(${Math.ceil(names.length / columns)}, minmax(0, 1fr)) / ` +

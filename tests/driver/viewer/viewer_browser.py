@@ -81,6 +81,17 @@ def main():
 
         ActionChains(driver).move_to_element(mask).perform()
         told["where"] = driver.find_element(By.ID, "where").text
+        # The first place to look at, where there is one.
+        places = driver.find_elements(By.CSS_SELECTOR, "nav button")
+        told["places"] = [place.text for place in places]
+        if places:
+            places[0].click()
+            WebDriverWait(driver, 60).until(
+                lambda d: d.execute_script("return mark !== null && mark.layer === index"))
+            told["flown_to"] = driver.execute_script(
+                "return [center[0] + job.origin_mm[0], center[1] + job.origin_mm[1],"
+                " index + job.first]")
+            driver.save_screenshot(picture.replace(".png", "_place.png"))
         told["faults"] = [entry["message"] for entry in driver.get_log("browser")
                           if entry["level"] == "SEVERE"]
         asked = [json.loads(entry["message"])["message"] for entry in driver.get_log("performance")]

@@ -20,7 +20,12 @@ using testing::IsEmpty;
 
 class Viewer : public testing::Test {
  protected:
-  Viewer() { models::write_obj(models::golf_ball(6, 4), here_ / "ball.obj"); }
+  // A ball, and under its edge a fin of 0.3 mm, too thin to print.
+  Viewer() {
+    models::write_obj(
+        models::joined(models::golf_ball(6, 4), models::box({4.5, 3.5, -6}, {4.8, 5.5, -4})),
+        here_ / "ball.obj");
+  }
 
   void slice(const std::vector<std::string>& more) const {
     std::vector<std::string> words = {"slice", here_ / "ball.obj", "-p", "z450",
@@ -86,6 +91,16 @@ TEST_F(Viewer, ShowsTheExportedPixelsInABrowserWithoutANetwork) {
   EXPECT_GT(seen["zoom"].get<double>(), 7);
   EXPECT_THAT(seen["where"].get<std::string>(), HasSubstr("layer 57"));
 
+  const nlohmann::json checked = here_.run({"check", here_ / "a.bjob", "--json"}).json();
+  ASSERT_FALSE(checked["worst_places"].empty());
+  const auto& worst = checked["worst_places"][0];
+  ASSERT_GE(seen["places"].size(), checked["worst_places"].size());
+  EXPECT_THAT(seen["places"][0].get<std::string>(),
+              HasSubstr("layer " + std::to_string(worst["layer"].get<int>())));
+  EXPECT_NEAR(seen["flown_to"][0].get<double>(), worst["at_mm"][0].get<double>(), 1e-6);
+  EXPECT_NEAR(seen["flown_to"][1].get<double>(), worst["at_mm"][1].get<double>(), 1e-6);
+  EXPECT_EQ(seen["flown_to"][2], worst["layer"]);
+
   const RunLayer mask = StackReader(here_ / "masks").read(kLayer);
   const RunLayer printed = StackReader(here_ / "printed").read(kLayer);
   const RunLayer plain = StackReader(here_ / "plain").read(kLayer);
@@ -142,6 +157,7 @@ TEST_F(Viewer, GoesWithoutATargetWhoseModelIsGone) {
   EXPECT_THAT(ran.err, HasSubstr("without the target"));
   const nlohmann::json seen = browse(50);
   EXPECT_THAT(seen["views"], ElementsAre("mask", "printed"));
+  EXPECT_THAT(seen["places"], IsEmpty());
   EXPECT_THAT(seen["faults"], IsEmpty());
 }
 
