@@ -50,6 +50,8 @@ Saying saying(FaultKind kind) {
 constexpr Saying kTrapped{"trapped", "pocket traps powder", "pockets trap powder",
                           "no way out for the powder in it", "keeps powder inside"};
 
+constexpr const char* kSound = "prints as it is";
+
 std::string region_text(const Json& found) {
   return fmt::format("  at {:.1f}, {:.1f}, {:.1f} mm, {:.2f} x {:.2f} x {:.2f} mm, layers {} to {}",
                      found["at_mm"][0].get<double>(), found["at_mm"][1].get<double>(),
@@ -107,9 +109,11 @@ std::string Findings::verdict() const {
     words.emplace_back(thin && thick ? "prints too thin and too thick in places"
                        : thin        ? "prints too thin in places"
                        : thick       ? "prints too thick in places"
-                                     : "prints as it is");
+                                     : kSound);
   }
-  if (trapped_.count > 0) words.emplace_back(kTrapped.verdict);
+  if (trapped_.count == 0) return listed(words);
+  if (words.front() == kSound) return fmt::format("{}, but {}", kSound, kTrapped.verdict);
+  words.emplace_back(kTrapped.verdict);
   return listed(words);
 }
 

@@ -28,7 +28,7 @@ class Findings {
   void finish();
 
   const JobScore& score() const { return score_; }
-  // What the print does, as a person would say it: "loses detail and keeps powder inside".
+  // What the print does, as a person would say it: "loses detail and comes apart".
   std::string verdict() const;
   // How many there are of each kind, found[], worst_places[].
   nlohmann::ordered_json to_json() const;

@@ -83,7 +83,7 @@ TEST_F(CheckVerb, NamesAPocketThatKeepsItsPowder) {
   EXPECT_EQ(said["trapped"], 1);
   const auto& pocket = said["found"][0];
   EXPECT_EQ(pocket["kind"], "trapped");
-  EXPECT_EQ(said["verdict"], "prints as it is and keeps powder inside") << "no detail is lost";
+  EXPECT_EQ(said["verdict"], "prints as it is, but keeps powder inside") << "no detail is lost";
   EXPECT_NEAR(pocket["volume_mm3"].get<double>(), 32, 2);
 }
 
