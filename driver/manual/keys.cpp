@@ -353,10 +353,10 @@ const std::map<std::string, std::vector<KeyTable> (*)()>& pages() {
        [] {
          return std::vector{result(
              Keys{{"verdict",
-                   "nothing to print, doubtful size, nothing of it prints, or what it does: prints "
-                   "as it is, prints too thin (too thick) in places, loses detail, closes gaps, "
-                   "leaves crumbs, comes apart, joins parts that are apart, keeps powder inside; "
-                   "several as a person would list them"}} +
+                   "nothing to print, doubtful size, nothing of it prints, prints as it is, or what "
+                   "goes wrong: loses detail, closes gaps, leaves crumbs, comes apart, joins parts "
+                   "that are apart, is too thin (too thick) in places, keeps powder inside; several "
+                   "as a person would list them"}} +
              faults() + Keys{{"trapped", "number of pockets that trap powder"}} +
              within("found[]", place_of_fault()) + within("worst_places[]", wrong_place()) +
              Keys{{"excess",

@@ -100,21 +100,21 @@ std::string Findings::verdict() const {
   for (const FaultKind kind : kFaultKinds) {
     if (count(kind) > 0) words.emplace_back(saying(kind).verdict);
   }
-  if (words.empty()) {
-    bool thin = false;
-    bool thick = false;
-    for (const WrongPlace& place : score_.depths.places(kMaxPlaces)) {
-      (is_missing(place.kind) ? thin : thick) = true;
-    }
-    words.emplace_back(thin && thick ? "prints too thin and too thick in places"
-                       : thin        ? "prints too thin in places"
-                       : thick       ? "prints too thick in places"
-                                     : kSound);
+  bool thin = false;
+  bool thick = false;
+  for (const WrongPlace& place : score_.depths.places(kMaxPlaces)) {
+    thin = thin || place.kind == WrongKind::kThin;
+    thick = thick || place.kind == WrongKind::kThick;
   }
-  if (trapped_.count == 0) return listed(words);
-  if (words.front() == kSound) return fmt::format("{}, but {}", kSound, kTrapped.verdict);
-  words.emplace_back(kTrapped.verdict);
-  return listed(words);
+  if (thin || thick) {
+    words.push_back(fmt::format("is {} in places", thin && thick ? "too thin and too thick"
+                                                   : thin        ? "too thin"
+                                                                 : "too thick"));
+  }
+  const bool sound = words.empty();
+  if (trapped_.count > 0) words.emplace_back(kTrapped.verdict);
+  if (!sound) return listed(words);
+  return words.empty() ? kSound : fmt::format("{}, but {}", kSound, words.front());
 }
 
 Json Findings::worst_places() const {

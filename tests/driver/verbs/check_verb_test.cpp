@@ -117,25 +117,25 @@ TEST_F(CheckVerb, NamesALoosePiece) {
   EXPECT_EQ(check(models::joined(blocks, box({3.9, 0, 0}, {6.1, 4, 2})))["loose"], 0);
 }
 
-// Needs plates that print 0.5 mm thick or more, so that one of 0.4 mm is wrong in its middle.
-Ran check_of_thin_plates(const Workplace& here, const std::vector<std::string>& more) {
-  const Mesh plates = models::joined(box({0, 0, 0}, {0.4, 3, 0.5}), box({4, 0, 0}, {4.3, 3, 0.5}));
-  models::write_obj(models::joined(plates, box({8, 0, 0}, {10, 3, 0.5})), here / "plates.obj");
-  std::string profile = here.text(BINDERJET_SOURCE_DIR "/profiles/z450.toml");
+// On a printer from whose powder nothing comes out that is thinner than 0.5 mm.
+Ran check_coarsely(const Workplace& here, const Mesh& mesh, const std::vector<std::string>& more) {
+  models::write_obj(mesh, here / "part.obj");
+  const std::string profile = here.text(BINDERJET_SOURCE_DIR "/profiles/z450.toml");
   std::ofstream(here / "coarse.toml") << profile << R"(
 [[effects]]
 kind = "survive"
 width_mm = [0.5, 0.5]
 )";
   std::vector<std::string> words = {
-      "check", here / "plates.obj", "-p", here / "coarse.toml", "--enhance", "none", "--at",
-      "50,50"};
+      "check", here / "part.obj", "-p", here / "coarse.toml", "--enhance", "none", "--at", "50,50"};
   words.insert(words.end(), more.begin(), more.end());
   return here.run(words);
 }
 
 TEST_F(CheckVerb, NamesTheWorstPlacesTheDeepestFirst) {
-  const Ran ran = check_of_thin_plates(here_, {"--json"});
+  Mesh plates = models::joined(box({0, 0, 0}, {0.4, 3, 0.5}), box({4, 0, 0}, {4.3, 3, 0.5}));
+  plates = models::joined(plates, box({8, 0, 0}, {10, 3, 0.5}));
+  const Ran ran = check_coarsely(here_, plates, {"--json"});
   ASSERT_EQ(ran.status, 0) << ran.err;
   const nlohmann::json said = ran.json();
   const auto& places = said["worst_places"];
@@ -150,7 +150,8 @@ TEST_F(CheckVerb, NamesTheWorstPlacesTheDeepestFirst) {
   for (const auto& place : places) {
     EXPECT_EQ(place["layer"], std::floor(place["at_mm"][2].get<double>() / 0.102));
   }
-  EXPECT_THAT(check_of_thin_plates(here_, {}).out, HasSubstr(" mm into what is lost at 50.2, 50."));
+  EXPECT_THAT(check_coarsely(here_, plates, {}).out,
+              HasSubstr(" mm into what is lost at 50.2, 50."));
 }
 
 TEST_F(CheckVerb, ReadsAJobInsteadOfSlicingItAgain) {
@@ -193,6 +194,15 @@ TEST_F(CheckVerb, SaysWhichLayersOfAShareItKnows) {
   EXPECT_EQ(said["trapped"], 1);
   EXPECT_EQ(only(said, "trapped")["layers"], nlohmann::json({10, 29}))
       << "from the job's first layer";
+}
+
+TEST_F(CheckVerb, ListsInItsVerdictAllThatGoesWrong) {
+  // Walls and slots of all widths, a hollow, and wedges whose tips are too thin.
+  ASSERT_EQ(here_.run({"coupon", "--kind", "full", "-o", here_ / "full.stl", "-q"}).status, 0);
+  const Ran ran =
+      here_.run({"check", here_ / "full.stl", "-p", "z450", "--enhance", "none", "--json"});
+  EXPECT_EQ(ran.json()["verdict"],
+            "loses detail, closes gaps, is too thin in places and keeps powder inside");
 }
 
 TEST_F(CheckVerb, SaysThatNothingPrints) {
