@@ -1,11 +1,11 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: GPL-3.0-or-later
-# Slices a part in shares under a real queue, Slurm, and under GNU parallel: one share is killed in its
-# middle and run again, and what `join` makes has the bytes of slicing in one go.
+# Slices a part in shares under a real queue, Slurm, and under GNU parallel: one share is killed in
+# its middle and run again, and what `join` makes has the bytes of slicing in one go.
 #   bash tests/packages/install.sh program cluster
 #   sudo bash tests/cluster/run.sh [build/binderjet]
-# Needs root. The daemons live in namespaces of their own: none is left however this script ends, none
-# takes a port of the machine, and a machine that belongs to a real cluster is not disturbed.
+# Needs root. The daemons live in namespaces of their own: none is left however this script ends,
+# none takes a port of the machine, and a machine that belongs to a real cluster is not disturbed.
 set -euo pipefail
 export PATH=$PATH:/usr/sbin:/sbin
 here=$(cd "$(dirname "$0")" && pwd)
@@ -17,7 +17,10 @@ if [ "${1:-}" != --inside ]; then
       exit 1
     }
   done
-  [ "$(id -u)" -eq 0 ] || { echo "run.sh: a queue of its own needs root: call it with sudo" >&2; exit 1; }
+  [ "$(id -u)" -eq 0 ] || {
+    echo "run.sh: a queue of its own needs root: call it with sudo" >&2
+    exit 1
+  }
   BINDERJET=$(realpath "${1:-$here/../../build/binderjet}")
   export BINDERJET
   work=$(mktemp -d)
@@ -44,8 +47,8 @@ LAYERS=$("$BINDERJET" slice "${words[@]}" -o whole.bjob --json -q |
   python3 -c 'import json, sys; print(json.load(sys.stdin)["layers"])')
 mkfifo held
 
-# In a folder of their own: all shares but number 1, which the task's caller kills. `run_shares` runs
-# them all and waits, `run_again` only what failed.
+# slice_in_shares FOLDER: `run_shares` starts all shares and waits for them, `run_again` only those
+# that failed. Share 1 is the one that is killed.
 slice_in_shares() {
   mkdir "$1"
   cd "$1"
@@ -64,8 +67,8 @@ slice_in_shares() {
   cd ..
 }
 
-run_shares() { parallel --joblog log bash "$here/share.sh" ::: $(seq 0 $((SHARES - 1))); }
-run_again() { parallel --joblog log --resume-failed bash "$here/share.sh" ::: $(seq 0 $((SHARES - 1))); }
+run_shares() { seq 0 $((SHARES - 1)) | parallel --joblog log bash "$here/share.sh"; }
+run_again() { parallel --joblog log --retry-failed; }
 slice_in_shares parallel
 
 mkdir slurm
