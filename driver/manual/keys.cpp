@@ -40,12 +40,15 @@ Keys faults() {
 }
 
 Keys place_of_fault() {
-  return {{"kind", "lost, fused, spurious, loose, joined, or trapped: powder without a way out"},
-          {"at_mm", "its middle on the bed: x, y, z in mm"},
-          {"size_mm", "its extent along x, y and z, mm"},
-          {"layers", "its first layer, and the layer after its last"},
-          {"voxels", "its volume in voxels"},
-          {"volume_mm3", "its volume in cubic mm"}};
+  return {
+      {"kind",
+       "lost, fused, spurious, loose, joined, or trapped: powder without a way out; check: also "
+       "thin or narrow, by the profile's [strength]"},
+      {"at_mm", "its middle on the bed: x, y, z in mm"},
+      {"size_mm", "its extent along x, y and z, mm"},
+      {"layers", "its first layer, and the layer after its last"},
+      {"voxels", "its volume in voxels"},
+      {"volume_mm3", "its volume in cubic mm"}};
 }
 
 Keys edge_errors() {
@@ -247,19 +250,23 @@ KeyTable effects() {
 }
 
 std::vector<KeyTable> profile_tables() {
-  return {result({{"profiles[].name", "list: the name that -p takes"},
-                  {"profiles[].path", "list: the file"},
-                  {"name", "show and check: the printer's name"},
-                  {"path", "the file"},
-                  {"source", "where its numbers come from"},
-                  {"dpi", "pixels per inch along x and y"},
-                  {"layer_mm", "the layer heights that it prints, mm; the first is the default"},
-                  {"detail_vx", "voxels per pixel along x and y, and per layer along z"},
-                  {"bed_mm", "the bed's size along x, y and z, mm"},
-                  {"effects[].kind", "a kind of the table below"},
-                  {"effects[].NAME", "a parameter of the kind, of the table below"},
-                  {"protocol", "how the printer is spoken to"}}),
-          effects()};
+  return {
+      result({{"profiles[].name", "list: the name that -p takes"},
+              {"profiles[].path", "list: the file"},
+              {"name", "show and check: the printer's name"},
+              {"path", "the file"},
+              {"source", "where its numbers come from"},
+              {"dpi", "pixels per inch along x and y"},
+              {"layer_mm", "the layer heights that it prints, mm; the first is the default"},
+              {"detail_vx", "voxels per pixel along x and y, and per layer along z"},
+              {"bed_mm", "the bed's size along x, y and z, mm"},
+              {"effects[].kind", "a kind of the table below"},
+              {"effects[].NAME", "a parameter of the kind, of the table below"},
+              {"strength.thinnest_mm",
+               "check's rule of thumb for walls and pins, mm; absent where the profile has none"},
+              {"strength.narrowest_mm", "the same for slots and holes, mm"},
+              {"protocol", "how the printer is spoken to"}}),
+      effects()};
 }
 
 const std::map<std::string, std::vector<KeyTable> (*)()>& pages() {
@@ -338,9 +345,16 @@ const std::map<std::string, std::vector<KeyTable> (*)()>& pages() {
       {"check",
        [] {
          return std::vector{result(
-             Keys{{"verdict", "prints as it is, loses detail, doubtful size or nothing to print"}} +
-             faults() + Keys{{"trapped", "number of pockets that trap powder"}} +
+             Keys{{"verdict",
+                   "prints as it is, may break, loses detail, doubtful size or nothing to print"}} +
+             faults() +
+             Keys{{"trapped", "number of pockets that trap powder"},
+                  {"thin",
+                   "number of places thinner than the profile's [strength] thinnest_mm; null "
+                   "where it has none or none that this grid can tell"},
+                  {"narrow", "number of gaps below its narrowest_mm; null as thin"}} +
              within("found[]", place_of_fault()) +
+             Keys{{"found[].width_mm", "thin and narrow: the width at its thickest, mm"}} +
              Keys{{"excess",
                    "wrong voxels beyond the layers' height, as a share of the "
                    "part's"}} +

@@ -23,6 +23,10 @@ bool larger(const Fault& a, const Fault& b) {
   return std::tuple(key(a.region), word(a.kind)) < std::tuple(key(b.region), word(b.kind));
 }
 
+bool larger(const ThinPlace& a, const ThinPlace& b) {
+  return std::tuple(a.width_mm, key(a.region)) < std::tuple(b.width_mm, key(b.region));
+}
+
 nlohmann::ordered_json located(std::string_view kind, const Region& region,
                                const std::array<double, 3>& origin_mm, const Grid& grid) {
   using Json = nlohmann::ordered_json;

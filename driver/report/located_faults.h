@@ -13,6 +13,7 @@
 #include "slicer/layers/grid.h"
 #include "slicer/layers/regions.h"
 #include "slicer/score/faults.h"
+#include "slicer/score/thin_places.h"
 
 namespace binderjet {
 
@@ -20,6 +21,8 @@ namespace binderjet {
 // which they were found.
 bool larger(const Region& a, const Region& b);
 bool larger(const Fault& a, const Fault& b);
+// A thin place is the graver the thinner it is.
+bool larger(const ThinPlace& a, const ThinPlace& b);
 
 // Faults, or regions that are none, such as pockets of trapped powder.
 template <class T>

@@ -6,6 +6,7 @@
 #include <map>
 #include <memory>
 #include <nlohmann/json.hpp>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -18,6 +19,7 @@
 #include "driver/verbs/verbs.h"
 #include "slicer/model/printer_model.h"
 #include "slicer/score/score.h"
+#include "slicer/score/thin_places.h"
 #include "slicer/score/trapped_powder.h"
 #include "slicer/voxels/voxelize.h"
 
@@ -70,9 +72,21 @@ struct Kind {
   }
 };
 
+// What the profile's [strength] says of the target, the thinnest first; a rule of thumb.
+struct Thin {
+  std::int64_t count = 0;
+  LargestOf<ThinPlace> places;
+};
+constexpr Saying kThin{"thin", "thin place", "thin places",
+                       "may break when powder is brushed off; the profile's rule of thumb"};
+constexpr Saying kNarrow{"narrow", "narrow gap", "narrow gaps",
+                         "may keep its powder; the profile's rule of thumb"};
+
 struct Checked {
   std::map<FaultKind, Kind> faults;
   Kind trapped;
+  std::optional<Thin> thin;  // nothing: no rule, or none that the grid can tell
+  std::optional<Thin> narrow;
   Totals totals;
   double excess = 0;
 };
@@ -113,6 +127,28 @@ Checked check_plan(const SlicePlan& plan, const Console& console) {
   return checked;
 }
 
+// Places of the target below a rule; says so where voxels are too coarse to tell.
+std::optional<Thin> below_rule(SlicePlan& plan, const char* key, std::optional<double> rule_mm,
+                               Matter matter, const Console& console) {
+  if (!rule_mm) return std::nullopt;
+  const JobHeader& header = plan.header;
+  if (*rule_mm < least_rule_mm(header.grid)) {
+    plan.warnings.push_back(fmt::format(
+        "[strength] {} = {:g} is not looked at: this grid cannot tell less than {:.2f} mm, "
+        "three of its coarsest voxels or layers; take a finer layer, or leave the key out",
+        key, *rule_mm, least_rule_mm(header.grid)));
+    console.warning(plan.warnings.back());
+    return std::nullopt;
+  }
+  Thin thin;
+  find_thin_places(voxel_layers(plan.mesh, header.grid, header.box, console.work()), header.grid,
+                   *rule_mm, matter, console.work(), [&](const ThinPlace& place) {
+                     ++thin.count;
+                     thin.places.add(place);
+                   });
+  return thin;
+}
+
 std::string place_text(const Json& found) {
   return fmt::format("  at {:.1f}, {:.1f}, {:.1f} mm, {:.2f} x {:.2f} x {:.2f} mm, layers {} to {}",
                      found["at_mm"][0].get<double>(), found["at_mm"][1].get<double>(),
@@ -121,12 +157,14 @@ std::string place_text(const Json& found) {
                      found["layers"][0].get<int>(), found["layers"][1].get<int>() - 1);
 }
 
-enum class Verdict { kAsItIs, kLosesDetail, kDoubtfulSize, kNothingToPrint };
+enum class Verdict { kAsItIs, kMayBreak, kLosesDetail, kDoubtfulSize, kNothingToPrint };
 
 const char* word(Verdict verdict) {
   switch (verdict) {
     case Verdict::kAsItIs:
       return "prints as it is";
+    case Verdict::kMayBreak:
+      return "may break";
     case Verdict::kLosesDetail:
       return "loses detail";
     case Verdict::kDoubtfulSize:
@@ -141,13 +179,18 @@ Verdict verdict_on(const Checked& checked, bool doubtful_size) {
   if (checked.totals.target_vx == 0) return Verdict::kNothingToPrint;
   if (doubtful_size) return Verdict::kDoubtfulSize;
   const bool sound = checked.faults.empty() && checked.trapped.count == 0;
-  return sound ? Verdict::kAsItIs : Verdict::kLosesDetail;
+  if (!sound) return Verdict::kLosesDetail;
+  return checked.thin && checked.thin->count > 0 ? Verdict::kMayBreak : Verdict::kAsItIs;
 }
 
 void check(const SliceOptions& options, const Console& console) {
   SlicePlan plan = plan_slices(options, console);
   const JobHeader& header = plan.header;
   Checked checked = check_plan(plan, console);
+  const StrengthRules& strength = header.profile.strength;
+  checked.thin = below_rule(plan, "thinnest_mm", strength.thinnest_mm, Matter::kPart, console);
+  checked.narrow =
+      below_rule(plan, "narrowest_mm", strength.narrowest_mm, Matter::kPowder, console);
   const std::string changed = rule_warning(checked.totals.rules, header.profile.mask);
   if (!changed.empty()) {
     console.warning(changed);
@@ -175,6 +218,24 @@ void check(const SliceOptions& options, const Console& console) {
   };
   for (const FaultKind kind : kFaultKinds) tell(saying(kind), checked.faults[kind]);
   tell(kTrapped, checked.trapped);
+  const auto tell_thin = [&](const Saying& say, const std::optional<Thin>& thin) {
+    json[std::string(say.word)] = thin ? Json(thin->count) : Json();
+    if (!thin || thin->count == 0) return;
+    text += fmt::format("{} {} ({}):\n", thin->count, thin->count == 1 ? say.one : say.many,
+                        say.meaning);
+    std::size_t told = 0;
+    for (const ThinPlace& place : thin->places.largest(kMaxNamed)) {
+      all.push_back(located(say.word, place.region, origin_mm, header.grid));
+      all.back()["width_mm"] = place.width_mm;
+      if (told++ < kMaxTold) {
+        text += place_text(all.back()) + fmt::format(", {:.2f} mm at its widest\n", place.width_mm);
+      }
+    }
+    const std::int64_t untold = thin->count - static_cast<std::int64_t>(kMaxTold);
+    if (untold > 0) text += fmt::format("  and {} wider ones\n", untold);
+  };
+  tell_thin(kThin, checked.thin);
+  tell_thin(kNarrow, checked.narrow);
   json["found"] = std::move(all);
   json["excess"] = checked.excess;
   const Estimate estimate = estimate_of(header, checked.totals);
