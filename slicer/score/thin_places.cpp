@@ -25,7 +25,7 @@ struct Cells {
 
   Cells(const Grid& voxels, double rule_mm)
       : grid{{voxels.voxel_mm(0), voxels.voxel_mm(1), voxels.pitch_mm[2]}, {1, 1, 1}},
-        rows_vx(std::max(1, static_cast<int>(rule_mm / 20 / voxels.voxel_mm(1)))),
+        rows_vx(std::max(1, static_cast<int>(rule_mm / 10 / voxels.voxel_mm(1)))),
         ball(0, grid),
         step(0, grid) {
     grid.pitch_mm[1] *= rows_vx;
