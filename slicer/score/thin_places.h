@@ -15,7 +15,7 @@
 // A place's width is the diameter of the largest ball around the middle of one of its rows: of a
 // wall at any angle its thickness, of a pin its diameter.
 //
-// Balls are laid out in cells: a voxel along x, rows along y up to a twentieth of the rule
+// Balls are laid out in cells: a voxel along x, rows along y up to a tenth of the rule
 // together, a layer along z; a cell with any solid voxel is solid. So a wall at the rule is never
 // named, one thinner by two cells always is, and a width may be a cell too large.
 #pragma once
