@@ -40,16 +40,19 @@ Keys faults() {
 }
 
 Keys place_of_fault() {
-  return {{"kind", "lost, fused, spurious, loose, joined, or trapped: powder without a way out"},
-          {"at_mm", "its middle on the bed: x, y, z in mm"},
-          {"size_mm", "its extent along x, y and z, mm"},
-          {"layers", "its first layer, and the layer after its last"},
-          {"voxels", "its volume in voxels"},
-          {"volume_mm3", "its volume in cubic mm"}};
+  return {
+      {"kind",
+       "lost, fused, spurious, loose, joined, or trapped: powder without a way out; check: also "
+       "thin or narrow, by the profile's [strength]"},
+      {"at_mm", "its middle on the bed: x, y, z in mm"},
+      {"size_mm", "its extent along x, y and z, mm"},
+      {"layers", "its first layer, and the layer after its last"},
+      {"voxels", "its volume in voxels"},
+      {"volume_mm3", "its volume in cubic mm"}};
 }
 
 Keys wrong_place() {
-  return {{"kind", "lost, fused, or else thin or thick: what is missing there, or too much"},
+  return {{"kind", "what is wrong: lost, fused, or else missing (too thin) or extra (too thick)"},
           {"at_mm", "its place on the bed: x, y, z in mm"},
           {"layer", "its layer"},
           {"depth_mm", "its distance from the target's surface, mm; 2 stands for 2 or more"}};
@@ -261,19 +264,23 @@ KeyTable effects() {
 }
 
 std::vector<KeyTable> profile_tables() {
-  return {result({{"profiles[].name", "list: the name that -p takes"},
-                  {"profiles[].path", "list: the file"},
-                  {"name", "show and check: the printer's name"},
-                  {"path", "the file"},
-                  {"source", "where its numbers come from"},
-                  {"dpi", "pixels per inch along x and y"},
-                  {"layer_mm", "the layer heights that it prints, mm; the first is the default"},
-                  {"detail_vx", "voxels per pixel along x and y, and per layer along z"},
-                  {"bed_mm", "the bed's size along x, y and z, mm"},
-                  {"effects[].kind", "a kind of the table below"},
-                  {"effects[].NAME", "a parameter of the kind, of the table below"},
-                  {"protocol", "how the printer is spoken to"}}),
-          effects()};
+  return {
+      result({{"profiles[].name", "list: the name that -p takes"},
+              {"profiles[].path", "list: the file"},
+              {"name", "show and check: the printer's name"},
+              {"path", "the file"},
+              {"source", "where its numbers come from"},
+              {"dpi", "pixels per inch along x and y"},
+              {"layer_mm", "the layer heights that it prints, mm; the first is the default"},
+              {"detail_vx", "voxels per pixel along x and y, and per layer along z"},
+              {"bed_mm", "the bed's size along x, y and z, mm"},
+              {"effects[].kind", "a kind of the table below"},
+              {"effects[].NAME", "a parameter of the kind, of the table below"},
+              {"strength.thinnest_mm",
+               "check's rule of thumb for walls and pins, mm; absent where the profile has none"},
+              {"strength.narrowest_mm", "the same for slots and holes, mm"},
+              {"protocol", "how the printer is spoken to"}}),
+      effects()};
 }
 
 const std::map<std::string, std::vector<KeyTable> (*)()>& pages() {
@@ -352,13 +359,21 @@ const std::map<std::string, std::vector<KeyTable> (*)()>& pages() {
       {"check",
        [] {
          return std::vector{result(
-             Keys{{"verdict",
-                   "nothing to print, doubtful size, nothing of it prints, prints as it is, or what "
-                   "goes wrong: loses detail, closes gaps, leaves crumbs, comes apart, joins parts "
-                   "that are apart, is too thin (too thick) in places, keeps powder inside; several "
-                   "as a person would list them"}} +
-             faults() + Keys{{"trapped", "number of pockets that trap powder"}} +
-             within("found[]", place_of_fault()) + within("worst_places[]", wrong_place()) +
+             Keys{
+                 {"verdict",
+                  "nothing to print, doubtful size, nothing of it prints, prints as it is, or what "
+                  "goes wrong: loses detail, closes gaps, leaves crumbs, comes apart, joins parts "
+                  "that are apart, is too thin (too thick) in places, may break, keeps powder "
+                  "inside; several as a person would list them"}} +
+             faults() +
+             Keys{{"trapped", "number of pockets that trap powder"},
+                  {"thin",
+                   "number of places thinner than the profile's [strength] thinnest_mm; null "
+                   "where it has none or none that this grid can tell"},
+                  {"narrow", "number of gaps below its narrowest_mm; null as thin"}} +
+             within("found[]", place_of_fault()) +
+             Keys{{"found[].width_mm", "thin and narrow: the width at its thickest, mm"}} +
+             within("worst_places[]", wrong_place()) +
              Keys{{"excess",
                    "wrong voxels beyond the layers' height, as a share of the "
                    "part's"}} +

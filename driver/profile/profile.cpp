@@ -161,6 +161,19 @@ MaskRules parse_mask(Table table) {
   return rules;
 }
 
+StrengthRules parse_strength(Table table) {
+  StrengthRules strength;
+  constexpr double kMaxMm = 20;
+  const auto rule = [&](const std::string& key) -> std::optional<double> {
+    if (!table.has(key)) return std::nullopt;
+    return table.numbers(key, 1, 0, kMaxMm).front();
+  };
+  strength.thinnest_mm = rule("thinnest_mm");
+  strength.narrowest_mm = rule("narrowest_mm");
+  table.no_other_keys();
+  return strength;
+}
+
 ColorSettings parse_color(Table table) {
   ColorSettings color;
   if (table.has("depth_mm")) color.depth_mm = table.numbers("depth_mm", 1, -1e-9, 5).front();
@@ -280,6 +293,7 @@ Profile parse_profile(const std::string& text, const std::string& path) {
     binder.no_other_keys();
   }
   if (root.has("mask")) profile.mask = parse_mask(root.table("mask"));
+  if (root.has("strength")) profile.strength = parse_strength(root.table("strength"));
   if (root.has("color")) profile.color = parse_color(root.table("color"));
   parse_device(root.table("device"), profile);
   root.no_other_keys();

@@ -15,6 +15,13 @@
 
 namespace binderjet {
 
+// What the powder can carry: a rule of thumb for check, which no mask and no score depends on.
+// Unset: check does not look.
+struct StrengthRules {
+  std::optional<double> thinnest_mm;   // walls and pins below may break when they are brushed off
+  std::optional<double> narrowest_mm;  // slots and holes below may keep their powder
+};
+
 struct Profile {
   std::string name;
   std::string source;  // where the numbers come from
@@ -32,6 +39,7 @@ struct Profile {
   // where [binder] does not say better.
   double binder_per_powder = 0.36;
   MaskRules mask;
+  StrengthRules strength;
   ColorSettings color;
   std::string protocol;
   std::vector<std::string> usb;  // "vid:pid", then words of transport/usb/usb_quirks.h

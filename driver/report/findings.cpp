@@ -24,6 +24,7 @@ struct Saying {
   const char* many;
   const char* meaning;
   const char* verdict;
+  const char* rest = "smaller";  // than those that are named
 };
 
 Saying saying(FaultKind kind) {
@@ -50,14 +51,28 @@ Saying saying(FaultKind kind) {
 constexpr Saying kTrapped{"trapped", "pocket traps powder", "pockets trap powder",
                           "no way out for the powder in it", "keeps powder inside"};
 
+// Rules of thumb about the model. A gap that keeps its powder is cleaned by hand, so no verdict.
+constexpr Saying kThin{
+    "thin",        "thin place",
+    "thin places", "may break when powder is brushed off; the profile's rule of thumb",
+    "may break",   "wider"};
+constexpr Saying kNarrow{
+    "narrow", "narrow gap", "narrow gaps", "may keep its powder; the profile's rule of thumb",
+    "",       "wider"};
+
 constexpr const char* kSound = "prints as it is";
 
-std::string region_text(const Json& found) {
-  return fmt::format("  at {:.1f}, {:.1f}, {:.1f} mm, {:.2f} x {:.2f} x {:.2f} mm, layers {} to {}",
-                     found["at_mm"][0].get<double>(), found["at_mm"][1].get<double>(),
-                     found["at_mm"][2].get<double>(), found["size_mm"][0].get<double>(),
-                     found["size_mm"][1].get<double>(), found["size_mm"][2].get<double>(),
-                     found["layers"][0].get<int>(), found["layers"][1].get<int>() - 1);
+std::string found_text(const Json& found) {
+  std::string text =
+      fmt::format("  at {:.1f}, {:.1f}, {:.1f} mm, {:.2f} x {:.2f} x {:.2f} mm, layers {} to {}",
+                  found["at_mm"][0].get<double>(), found["at_mm"][1].get<double>(),
+                  found["at_mm"][2].get<double>(), found["size_mm"][0].get<double>(),
+                  found["size_mm"][1].get<double>(), found["size_mm"][2].get<double>(),
+                  found["layers"][0].get<int>(), found["layers"][1].get<int>() - 1);
+  if (found.contains("width_mm")) {
+    text += fmt::format(", {:.2f} mm at its widest", found["width_mm"].get<double>());
+  }
+  return text;
 }
 
 // "a", "a and b", "a, b and c".
@@ -103,18 +118,28 @@ std::string Findings::verdict() const {
   bool thin = false;
   bool thick = false;
   for (const WrongPlace& place : score_.depths.places(kMaxPlaces)) {
-    thin = thin || place.kind == WrongKind::kThin;
-    thick = thick || place.kind == WrongKind::kThick;
+    thin = thin || place.kind == WrongKind::kMissing;
+    thick = thick || place.kind == WrongKind::kExtra;
   }
   if (thin || thick) {
     words.push_back(fmt::format("is {} in places", thin && thick ? "too thin and too thick"
                                                    : thin        ? "too thin"
                                                                  : "too thick"));
   }
+  // What is lost is thin too: of a thin place that is printed the verdict is that of a sound print.
   const bool sound = words.empty();
+  if (sound && thin_ && thin_->count > 0) words.emplace_back(kThin.verdict);
   if (trapped_.count > 0) words.emplace_back(kTrapped.verdict);
   if (!sound) return listed(words);
-  return words.empty() ? kSound : fmt::format("{}, but {}", kSound, words.front());
+  return words.empty() ? kSound : fmt::format("{}, but {}", kSound, listed(words));
+}
+
+template <class Tell>
+void Findings::for_each_kind(const Tell& tell) const {
+  for (const auto& [kind, found] : faults_) tell(saying(kind), found);
+  if (trapped_.count > 0) tell(kTrapped, trapped_);
+  if (thin_ && thin_->count > 0) tell(kThin, *thin_);
+  if (narrow_ && narrow_->count > 0) tell(kNarrow, *narrow_);
 }
 
 Json Findings::worst_places() const {
@@ -127,38 +152,31 @@ Json Findings::worst_places() const {
 
 Json Findings::to_json() const {
   Json json;
-  Json found = Json::array();
-  const auto tell = [&](const Saying& say, std::int64_t count, const Kind* kind) {
-    json[std::string(say.word)] = count;
-    if (kind == nullptr) return;
-    for (const Region& region : kind->regions.largest(kMaxNamed)) {
-      found.push_back(located(say.word, region, origin_mm_, grid_));
+  for (const FaultKind kind : kFaultKinds) json[std::string(word(kind))] = count(kind);
+  json[std::string(kTrapped.word)] = trapped_.count;
+  json[std::string(kThin.word)] = thin_ ? Json(thin_->count) : Json();
+  json[std::string(kNarrow.word)] = narrow_ ? Json(narrow_->count) : Json();
+  json["found"] = Json::array();
+  for_each_kind([&](const Saying& say, const auto& kind) {
+    for (const auto& place : kind.places.largest(kMaxNamed)) {
+      json["found"].push_back(located(say.word, place, origin_mm_, grid_));
     }
-  };
-  for (const FaultKind kind : kFaultKinds) {
-    const auto all = faults_.find(kind);
-    tell(saying(kind), count(kind), all == faults_.end() ? nullptr : &all->second);
-  }
-  tell(kTrapped, trapped_.count, &trapped_);
-  json["found"] = std::move(found);
+  });
   json["worst_places"] = worst_places();
   return json;
 }
 
 std::string Findings::text() const {
   std::string text;
-  const auto tell = [&](const Saying& say, const Kind& kind) {
-    if (kind.count == 0) return;
+  for_each_kind([&](const Saying& say, const auto& kind) {
     text +=
         fmt::format("{} {} ({}):\n", kind.count, kind.count == 1 ? say.one : say.many, say.meaning);
-    for (const Region& region : kind.regions.largest(kMaxTold)) {
-      text += region_text(located(say.word, region, origin_mm_, grid_)) + "\n";
+    for (const auto& place : kind.places.largest(kMaxTold)) {
+      text += found_text(located(say.word, place, origin_mm_, grid_)) + "\n";
     }
     const std::int64_t untold = kind.count - static_cast<std::int64_t>(kMaxTold);
-    if (untold > 0) text += fmt::format("  and {} smaller ones\n", untold);
-  };
-  for (const auto& [kind, all] : faults_) tell(saying(kind), all);
-  tell(kTrapped, trapped_);
+    if (untold > 0) text += fmt::format("  and {} {} ones\n", untold, say.rest);
+  });
   const Json places = worst_places();
   if (places.empty()) {
     text +=
@@ -179,9 +197,9 @@ Json Findings::to_look_at() const {
                       {"layer", place["layer"]},
                       {"size_mm", {0, 0}}});
   }
-  const auto tell = [&](const Saying& say, const Kind& kind) {
-    for (const Region& region : kind.regions.largest(kMaxShown)) {
-      const Json found = located(say.word, region, origin_mm_, grid_);
+  for_each_kind([&](const Saying& say, const auto& kind) {
+    for (const auto& place : kind.places.largest(kMaxShown)) {
+      const Json found = located(say.word, place, origin_mm_, grid_);
       const int first = found["layers"][0].get<int>();
       const int last = found["layers"][1].get<int>() - 1;
       places.push_back({{"say", say.one},
@@ -189,9 +207,7 @@ Json Findings::to_look_at() const {
                         {"layer", (first + last) / 2},
                         {"size_mm", {found["size_mm"][0], found["size_mm"][1]}}});
     }
-  };
-  for (const auto& [kind, all] : faults_) tell(saying(kind), all);
-  tell(kTrapped, trapped_);
+  });
   return places;
 }
 

@@ -31,6 +31,10 @@ bool larger(const Fault& a, const Fault& b) {
   return std::tuple(key(a.region), word(a.kind)) < std::tuple(key(b.region), word(b.kind));
 }
 
+bool larger(const ThinPlace& a, const ThinPlace& b) {
+  return std::tuple(a.width_mm, key(a.region)) < std::tuple(b.width_mm, key(b.region));
+}
+
 nlohmann::ordered_json located(std::string_view kind, const Region& region,
                                const std::array<double, 3>& origin_mm, const Grid& grid) {
   using Json = nlohmann::ordered_json;
@@ -53,6 +57,13 @@ nlohmann::ordered_json located(std::string_view kind, const Region& region,
           {"volume_mm3", static_cast<double>(region.voxels) * voxel_mm3}};
 }
 
+nlohmann::ordered_json located(std::string_view kind, const ThinPlace& place,
+                               const std::array<double, 3>& origin_mm, const Grid& grid) {
+  nlohmann::ordered_json json = located(kind, place.region, origin_mm, grid);
+  json["width_mm"] = rounded(place.width_mm);
+  return json;
+}
+
 nlohmann::ordered_json located(const WrongPlace& place, const std::array<double, 3>& origin_mm,
                                const Grid& grid) {
   nlohmann::ordered_json at = nlohmann::ordered_json::array();
@@ -69,8 +80,8 @@ nlohmann::ordered_json located(const WrongPlace& place, const std::array<double,
 std::string wrong_text(const nlohmann::ordered_json& located) {
   static const std::map<std::string, const char*> words = {{"lost", "into what is lost"},
                                                            {"fused", "into a gap that is fused"},
-                                                           {"thin", "too thin"},
-                                                           {"thick", "too thick"}};
+                                                           {"missing", "too thin"},
+                                                           {"extra", "too thick"}};
   return depth_text(located["depth_mm"].get<double>()) + " " +
          words.at(located["kind"].get<std::string>());
 }

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The faults of a print and its deepest wrong places, and where on the bed they are; of faults a
-// list that stays bounded, the largest first.
+// The faults of a print, its thin places and its deepest wrong ones, and where on the bed they are;
+// of faults and thin places a list that stays bounded, the gravest first.
 #pragma once
 
 #include <algorithm>
@@ -15,6 +15,7 @@
 #include "slicer/layers/regions.h"
 #include "slicer/score/depth.h"
 #include "slicer/score/faults.h"
+#include "slicer/score/thin_places.h"
 
 namespace binderjet {
 
@@ -22,8 +23,10 @@ namespace binderjet {
 // which they were found.
 bool larger(const Region& a, const Region& b);
 bool larger(const Fault& a, const Fault& b);
+// A thin place is the graver the thinner it is.
+bool larger(const ThinPlace& a, const ThinPlace& b);
 
-// Faults, or regions that are none, such as pockets of trapped powder.
+// Faults, or what is none, such as pockets of trapped powder and thin places.
 template <class T>
 class LargestOf {
  public:
@@ -51,6 +54,10 @@ class LargestOf {
 // What it is called, where on the bed (its middle), how large, in which layers; `origin_mm` is
 // voxel 0, 0 of slice 0.
 nlohmann::ordered_json located(std::string_view kind, const Region& region,
+                               const std::array<double, 3>& origin_mm, const Grid& grid);
+
+// The same, and how thick it is.
+nlohmann::ordered_json located(std::string_view kind, const ThinPlace& place,
                                const std::array<double, 3>& origin_mm, const Grid& grid);
 
 // A wrong voxel: what it is, where on the bed, in which layer, how deep.

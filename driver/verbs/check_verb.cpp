@@ -9,6 +9,7 @@
 #include <filesystem>
 #include <memory>
 #include <nlohmann/json.hpp>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -24,6 +25,7 @@
 #include "slicer/base/error.h"
 #include "slicer/model/printer_model.h"
 #include "slicer/score/score.h"
+#include "slicer/score/thin_places.h"
 #include "slicer/voxels/voxelize.h"
 
 namespace binderjet {
@@ -94,6 +96,33 @@ Print print_of_job(const MaskSource& job, const PrinterModel& model, const JobHe
   return print;
 }
 
+// Places of the target below a rule of [strength], those within the layers that are checked. All
+// of the target is looked at: the cut end of a share is no thin place.
+std::optional<ThinPlaces> below_rule(const char* key, std::optional<double> rule_mm, Matter matter,
+                                     Print& print, const Console& console) {
+  if (!rule_mm) return std::nullopt;
+  const JobHeader& header = print.header;
+  const double least_mm = least_rule_mm(header.grid);
+  if (*rule_mm < least_mm) {
+    print.warnings.push_back(fmt::format(
+        "[strength] {} = {:g} is not looked at: this grid cannot tell less than {:.2f} mm, "
+        "three of its coarsest voxels or layers; take a finer layer, or leave the key out",
+        key, *rule_mm, least_mm));
+    console.warning(print.warnings.back());
+    return std::nullopt;
+  }
+  const int rz = header.grid.detail_vx[2];
+  ThinPlaces places;
+  find_thin_places(voxel_layers(print.mesh, header.grid, header.box, console.work()), header.grid,
+                   *rule_mm, matter, console.work(), [&](const ThinPlace& place) {
+                     if (place.region.low[2] < print.layers.last * rz &&
+                         place.region.high[2] > print.layers.first * rz) {
+                       places.add(place);
+                     }
+                   });
+  return places;
+}
+
 std::string verdict_on(const Findings& findings, bool doubtful_size) {
   if (findings.score().voxels.solid == 0) return "nothing to print";
   if (doubtful_size) return "doubtful size";
@@ -114,6 +143,10 @@ void check(Print print, const Console& console) {
       stage.reach(layers->rest().first - print.layers.first);
     }
   }
+  const StrengthRules& strength = header.profile.strength;
+  findings.set_thin(below_rule("thinnest_mm", strength.thinnest_mm, Matter::kPart, print, console));
+  findings.set_narrow(
+      below_rule("narrowest_mm", strength.narrowest_mm, Matter::kPowder, print, console));
   findings.finish();
   const VoxelCounts& voxels = findings.score().voxels;
   Totals totals;

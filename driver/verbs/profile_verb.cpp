@@ -17,6 +17,13 @@
 namespace binderjet {
 namespace {
 
+nlohmann::ordered_json to_json(const StrengthRules& strength) {
+  nlohmann::ordered_json out = nlohmann::ordered_json::object();
+  if (strength.thinnest_mm) out["thinnest_mm"] = *strength.thinnest_mm;
+  if (strength.narrowest_mm) out["narrowest_mm"] = *strength.narrowest_mm;
+  return out;
+}
+
 nlohmann::ordered_json to_json(const Profile& profile) {
   nlohmann::ordered_json effects = nlohmann::ordered_json::array();
   for (const EffectSpec& effect : profile.effects) {
@@ -28,10 +35,16 @@ nlohmann::ordered_json to_json(const Profile& profile) {
     }
     effects.push_back(one);
   }
-  return {
-      {"name", profile.name},     {"path", profile.path},         {"source", profile.source},
-      {"dpi", profile.dpi},       {"layer_mm", profile.layer_mm}, {"detail_vx", profile.detail_vx},
-      {"bed_mm", profile.bed_mm}, {"effects", effects},           {"protocol", profile.protocol}};
+  return {{"name", profile.name},
+          {"path", profile.path},
+          {"source", profile.source},
+          {"dpi", profile.dpi},
+          {"layer_mm", profile.layer_mm},
+          {"detail_vx", profile.detail_vx},
+          {"bed_mm", profile.bed_mm},
+          {"effects", effects},
+          {"strength", to_json(profile.strength)},
+          {"protocol", profile.protocol}};
 }
 
 void list_profiles(const Console& console) {

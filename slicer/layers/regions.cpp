@@ -17,6 +17,7 @@ void Region::include(const Region& other) {
   }
   voxels += other.voxels;
   touches = touches || other.touches;
+  widest = std::max(widest, other.widest);
 }
 
 Region in_slices(Region region, int slices_per_layer) {
@@ -43,7 +44,8 @@ void RegionFinder::join(std::size_t a, std::size_t b) {
   regions_[a].include(regions_[b]);
 }
 
-std::vector<Region> RegionFinder::add(const RunLayer& slice, const RunLayer* marks) {
+std::vector<Region> RegionFinder::add(const RunLayer& slice, const RunLayer* marks,
+                                      std::span<const double> widths) {
   const std::size_t old = regions_.size();
   std::vector<std::size_t> of_run;
   std::size_t row_begin = 0;     // the number of the row's first run
@@ -53,10 +55,14 @@ std::vector<Region> RegionFinder::add(const RunLayer& slice, const RunLayer* mar
     const auto row = slice.row(y);
     before_begin = std::exchange(row_begin, of_run.size());
     for (std::size_t i = 0; i < row.size(); i += 2) {
+      const double width = widths.empty() ? 0 : widths[of_run.size()];
       of_run.push_back(regions_.size());
       parent_.push_back(regions_.size());
-      regions_.push_back(
-          {{row[i], y, slice_}, {row[i + 1], y + 1, slice_ + 1}, row[i + 1] - row[i], false});
+      regions_.push_back({{row[i], y, slice_},
+                          {row[i + 1], y + 1, slice_ + 1},
+                          row[i + 1] - row[i],
+                          false,
+                          width});
     }
     if (!row.empty()) {
       rows::for_each_overlap(row, slice.row(y - 1), [&](std::size_t i, std::size_t j) {

@@ -13,6 +13,7 @@
 
 #include <array>
 #include <cstdint>
+#include <span>
 #include <vector>
 
 #include "slicer/layers/run_layer.h"
@@ -25,6 +26,7 @@ struct Region {
   std::array<int, 3> high{};  // the greatest, plus 1
   std::int64_t voxels = 0;
   bool touches = false;  // holds a voxel that was marked
+  double widest = 0;     // the largest of the widths that came with its runs
 
   // Takes in another region, or a first one if this has no voxel yet.
   void include(const Region& other);
@@ -37,8 +39,10 @@ class RegionFinder {
  public:
   explicit RegionFinder(int first_slice = 0) : slice_(first_slice) {}
 
-  // Adds the next slice up and returns the regions that end below it. `marks` may be null.
-  std::vector<Region> add(const RunLayer& slice, const RunLayer* marks = nullptr);
+  // Adds the next slice up and returns the regions that end below it. `marks` may be null; `widths`
+  // is empty or has one number for each run of the slice, row by row.
+  std::vector<Region> add(const RunLayer& slice, const RunLayer* marks = nullptr,
+                          std::span<const double> widths = {});
   // The regions that reach to the end.
   std::vector<Region> finish();
 

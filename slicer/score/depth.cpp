@@ -31,20 +31,18 @@ void columns_with(const VoxelLayer& target, int y, int most, std::vector<int>& o
 
 }  // namespace
 
-bool is_missing(WrongKind kind) { return kind == WrongKind::kLost || kind == WrongKind::kThin; }
-
 std::string_view word(WrongKind kind) {
   switch (kind) {
     case WrongKind::kLost:
       return "lost";
     case WrongKind::kFused:
       return "fused";
-    case WrongKind::kThin:
-      return "thin";
-    case WrongKind::kThick:
+    case WrongKind::kMissing:
+      return "missing";
+    case WrongKind::kExtra:
       break;
   }
-  return "thick";
+  return "extra";
 }
 
 bool deeper(const WrongPlace& a, const WrongPlace& b) {
@@ -60,11 +58,26 @@ Depths::Depths(const Grid& grid)
       named_mm_(*std::max_element(grid.pitch_mm.begin(), grid.pitch_mm.end())),
       of_um_(static_cast<std::size_t>(kMaxMm * 1000) + 1, 0) {}
 
-void Depths::add(const WrongPlace& wrong) {
-  ++of_um_[static_cast<std::size_t>(std::lround(wrong.depth_mm * 1e3))];
-  ++count_;
-  if (!worst_ || deeper(wrong, *worst_)) worst_ = wrong;
-  if (wrong.depth_mm > named_mm_) keep(wrong);
+void Depths::add(WrongPlace first, std::span<const double> depths_mm) {
+  count_ += static_cast<std::int64_t>(depths_mm.size());
+  const int begin = first.voxel[0];
+  const int end = begin + static_cast<int>(depths_mm.size());
+  // The deepest voxel of each cell; of equals the first.
+  for (WrongPlace wrong = first; wrong.voxel[0] < end;) {
+    int next = wrong.voxel[0] + 1;
+    while (next < end && cell_along(0, next) == cell_along(0, wrong.voxel[0])) ++next;
+    const auto in_cell = depths_mm.subspan(static_cast<std::size_t>(wrong.voxel[0] - begin),
+                                           static_cast<std::size_t>(next - wrong.voxel[0]));
+    for (const double depth_mm : in_cell) {
+      ++of_um_[static_cast<std::size_t>(std::lround(depth_mm * 1e3))];
+    }
+    const auto deepest = std::max_element(in_cell.begin(), in_cell.end());
+    wrong.depth_mm = *deepest;
+    wrong.voxel[0] += static_cast<int>(deepest - in_cell.begin());
+    if (!worst_ || deeper(wrong, *worst_)) worst_ = wrong;
+    if (wrong.depth_mm > named_mm_) keep(wrong);
+    wrong.voxel[0] = next;
+  }
 }
 
 Depths& Depths::operator+=(const Depths& other) {
@@ -75,12 +88,14 @@ Depths& Depths::operator+=(const Depths& other) {
   return *this;
 }
 
+int Depths::cell_along(std::size_t axis, int voxel) const {
+  return static_cast<int>(voxel * voxel_mm_[axis] / kCellMm);
+}
+
 Depths::Cell Depths::cell_of(const WrongPlace& wrong) const {
-  Cell cell{is_missing(wrong.kind) ? 0 : 1, 0, 0, 0};
-  for (std::size_t axis = 0; axis < 3; ++axis) {
-    cell[axis + 1] = static_cast<int>(wrong.voxel[axis] * voxel_mm_[axis] / kCellMm);
-  }
-  return cell;
+  const bool extra = wrong.kind == WrongKind::kFused || wrong.kind == WrongKind::kExtra;
+  return {extra ? 1 : 0, cell_along(0, wrong.voxel[0]), cell_along(1, wrong.voxel[1]),
+          cell_along(2, wrong.voxel[2])};
 }
 
 void Depths::keep(const WrongPlace& wrong) {
@@ -128,7 +143,7 @@ std::vector<WrongPlace> Depths::places(std::size_t most) const {
 
 LayerReach DepthFinder::reach() const {
   const int rz = grid_.detail_vx[2];
-  return LayerReach::both_sides((distance_.reach_slices() + rz - 1) / rz);
+  return LayerReach::both_sides((reach_slices_ + rz - 1) / rz);
 }
 
 Depths DepthFinder::find(int layer, const Window<ComparedLayer>& window,
@@ -148,8 +163,15 @@ Depths DepthFinder::find(int layer, const Window<ComparedLayer>& window,
 
   const VoxelLayer& target = *window.middle().target;
   const RunLayer& printed = *window.middle().printed;
-  std::vector<int> columns, too_little, too_much, runs;
-  std::vector<double> distances_mm;
+  std::vector<SurfaceDistance> distances;  // by slice of the layer
+  for (int s = 0; s < rz; ++s) {
+    distances.emplace_back(
+        grid_, Depths::kMaxMm,
+        std::span(slices).subspan(static_cast<std::size_t>(below * rz + s - reach_slices_),
+                                  2 * static_cast<std::size_t>(reach_slices_) + 1));
+  }
+  std::vector<int> columns, too_little, too_much, wrong, runs;
+  std::vector<double> depths_mm;
   for (int y = 0; y < printed.height(); ++y) {
     columns_with(target, y, rz / 2 + 1, columns);
     rows::subtract(columns, printed.row(y), too_little);
@@ -157,24 +179,22 @@ Depths DepthFinder::find(int layer, const Window<ComparedLayer>& window,
     rows::subtract(printed.row(y), columns, too_much);
     for (int s = 0; s < rz; ++s) {
       const auto index = static_cast<std::size_t>(s);
-      const std::span<const RunLayer* const> around(
-          slices.data() + below * rz + s - distance_.reach_slices(),
-          2 * static_cast<std::size_t>(distance_.reach_slices()) + 1);
-      const auto take = [&](bool solid, const RunLayer& whole, WrongKind of_whole,
-                            WrongKind of_skin) {
+      const auto add = [&](WrongKind kind, bool solid) {
         for (std::size_t i = 0; i < runs.size(); i += 2) {
-          distance_.of_run(around, y, runs[i], runs[i + 1], solid, distances_mm);
-          for (int x = runs[i]; x < runs[i + 1]; ++x) {
-            depths.add({distances_mm[static_cast<std::size_t>(x - runs[i])],
-                        {x, y, layer * rz + s},
-                        whole.at(x, y) ? of_whole : of_skin});
-          }
+          distances[index].of_run(y, runs[i], runs[i + 1], solid, depths_mm);
+          depths.add({0, {runs[i], y, layer * rz + s}, kind}, depths_mm);
         }
       };
-      rows::intersect(too_little, target.slices[index].row(y), runs);
-      take(true, missing.lost[index], WrongKind::kLost, WrongKind::kThin);
-      rows::subtract(too_much, target.slices[index].row(y), runs);
-      take(false, missing.fused[index], WrongKind::kFused, WrongKind::kThick);
+      rows::intersect(too_little, target.slices[index].row(y), wrong);
+      rows::intersect(wrong, missing.lost[index].row(y), runs);
+      add(WrongKind::kLost, true);
+      rows::subtract(wrong, missing.lost[index].row(y), runs);
+      add(WrongKind::kMissing, true);
+      rows::subtract(too_much, target.slices[index].row(y), wrong);
+      rows::intersect(wrong, missing.fused[index].row(y), runs);
+      add(WrongKind::kFused, false);
+      rows::subtract(wrong, missing.fused[index].row(y), runs);
+      add(WrongKind::kExtra, false);
     }
   }
   return depths;

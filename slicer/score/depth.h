@@ -24,6 +24,7 @@
 #include <cstdint>
 #include <map>
 #include <optional>
+#include <span>
 #include <string_view>
 #include <vector>
 
@@ -36,8 +37,7 @@ namespace binderjet {
 
 // Wrong voxels of a lost feature, of a fused gap, and else of a part that is thinner or thicker
 // than it should be.
-enum class WrongKind { kLost, kFused, kThin, kThick };
-bool is_missing(WrongKind kind);  // else extra
+enum class WrongKind { kLost, kFused, kMissing, kExtra };
 std::string_view word(WrongKind kind);
 
 struct WrongPlace {
@@ -57,7 +57,9 @@ class Depths {
   // Of a layer on this grid. Without one it is empty, and is there to be assigned to.
   explicit Depths(const Grid& grid = {});
 
-  void add(const WrongPlace& wrong);
+  // Wrong voxels of one kind side by side: the first, whose depth_mm is not read, and the depth of
+  // each.
+  void add(WrongPlace first, std::span<const double> depths_mm);
   Depths& operator+=(const Depths& other);
 
   std::int64_t count() const { return count_; }  // of the voxels that count
@@ -77,6 +79,7 @@ class Depths {
   // What hangs together: missing or extra, and a cube of kCellMm.
   using Cell = std::array<int, 4>;
 
+  int cell_along(std::size_t axis, int voxel) const;
   Cell cell_of(const WrongPlace& wrong) const;
   void keep(const WrongPlace& wrong);
 
@@ -92,14 +95,15 @@ class Depths {
 // layers are powder.
 class DepthFinder {
  public:
-  explicit DepthFinder(const Grid& grid) : grid_(grid), distance_(grid, Depths::kMaxMm) {}
+  explicit DepthFinder(const Grid& grid)
+      : grid_(grid), reach_slices_(SurfaceDistance::reach_slices(grid, Depths::kMaxMm)) {}
 
   LayerReach reach() const;
   Depths find(int layer, const Window<ComparedLayer>& window, const LostAndFused& missing) const;
 
  private:
   Grid grid_;
-  SurfaceDistance distance_;
+  int reach_slices_;
 };
 
 }  // namespace binderjet

@@ -4,129 +4,159 @@
 #include <algorithm>
 #include <cassert>
 #include <cmath>
+#include <cstdlib>
 #include <limits>
-#include <numeric>
-#include <tuple>
+#include <utility>
+
+#include "slicer/layers/rows.h"
 
 namespace binderjet {
 namespace {
 
-double gap_mm(int voxels, double voxel_mm) {
-  return std::max(0.0, std::abs(voxels) - 0.5) * voxel_mm;
+constexpr double kFar = std::numeric_limits<double>::infinity();
+// Within this part of what is searched, rows are looked at for the run alone, else kept.
+constexpr double kNearPart = 1.0 / 16;
+
+double gap2_mm2(int voxels, double voxel_mm) {
+  const double gap_mm = std::max(0.0, std::abs(voxels) - 0.5) * voxel_mm;
+  return gap_mm * gap_mm;
 }
 
 // The most voxels along an axis that are nearer than `radius_mm`.
 int reach(double radius_mm, double voxel_mm) {
   int voxels = 0;
-  while (gap_mm(voxels + 1, voxel_mm) < radius_mm) ++voxels;
+  while (gap2_mm2(voxels + 1, voxel_mm) < radius_mm * radius_mm) ++voxels;
   return voxels;
 }
 
-// Calls take(first, last) for the runs of the row's voxels in [first, last) that are `solid`.
-template <class Take>
-void for_each_run(std::span<const int> flips, int first, int last, bool solid, const Take& take) {
-  auto flip = std::upper_bound(flips.begin(), flips.end(), first);
-  bool is_solid = (flip - flips.begin()) % 2 == 1;
-  for (int x = first; x < last; ++flip) {
-    const int end = flip == flips.end() ? last : std::min(*flip, last);
-    if (is_solid == solid) take(x, end);
-    is_solid = !is_solid;
-    if (end == last) return;
-    x = end;
-  }
-}
-
-// Places from 0 on, each of which is taken once: next(i) is the first at or after i that is left.
-class PlacesLeft {
- public:
-  explicit PlacesLeft(int count) : next_(static_cast<std::size_t>(count) + 1) {
-    std::iota(next_.begin(), next_.end(), 0);
-  }
-  int next(int place) {
-    int left = place;
-    while (at(left) != left) left = at(left);
-    while (at(place) != left) place = std::exchange(at(place), left);
-    return left;
-  }
-  void take(int place) { at(place) = place + 1; }
-
- private:
-  int& at(int place) { return next_[static_cast<std::size_t>(place)]; }
-  std::vector<int> next_;
-};
-
 }  // namespace
 
-SurfaceDistance::SurfaceDistance(const Grid& grid, double max_mm)
+int SurfaceDistance::reach_slices(const Grid& grid, double max_mm) {
+  return reach(max_mm, grid.voxel_mm(2));
+}
+
+SurfaceDistance::SurfaceDistance(const Grid& grid, double max_mm,
+                                 std::span<const RunLayer* const> slices)
     : max_mm_(max_mm),
-      voxel_x_mm_(grid.voxel_mm(0)),
-      reach_slices_(reach(max_mm, grid.voxel_mm(2))) {
-  const int reach_y = reach(max_mm, grid.voxel_mm(1));
-  for (int z = -reach_slices_; z <= reach_slices_; ++z) {
-    for (int y = -reach_y; y <= reach_y; ++y) {
-      const double gap2 =
-          std::pow(gap_mm(y, grid.voxel_mm(1)), 2) + std::pow(gap_mm(z, grid.voxel_mm(2)), 2);
-      if (gap2 < max_mm * max_mm) offsets_.push_back({y, z, gap2});
-    }
-  }
-  std::sort(offsets_.begin(), offsets_.end(), [](const Offset& a, const Offset& b) {
-    return std::tie(a.gap2_mm2, a.z, a.y) < std::tie(b.gap2_mm2, b.z, b.y);
-  });
+      voxel_mm_{grid.voxel_mm(0), grid.voxel_mm(1), grid.voxel_mm(2)},
+      slices_(slices) {
+  assert(static_cast<int>(slices.size()) == 2 * reach_slices(grid, max_mm) + 1);
 }
 
-void SurfaceDistance::search(std::span<const RunLayer* const> slices, int y, int first, int last,
-                             bool solid, double radius_mm, double* squares) const {
-  const int reach_x = reach(radius_mm, voxel_x_mm_);
+SurfaceDistance::Stretches SurfaceDistance::along_z(int y, int first, int last, bool solid,
+                                                    double radius_mm) const {
+  Stretches found;
+  std::vector<int> open{first, last};  // has met no other state so far
+  std::vector<int> next;
+  std::vector<int> met;
+  const int middle = static_cast<int>(slices_.size() / 2);
+  const int reach_z = reach(radius_mm, voxel_mm_[2]);
+  const auto meet = [&](int dz) {
+    const RunLayer* slice = slices_[static_cast<std::size_t>(middle + dz)];
+    const rows::Row row = slice == nullptr ? rows::Row() : slice->row(y);
+    if (solid) {
+      rows::intersect(open, row, next);
+    } else {
+      rows::subtract(open, row, next);
+    }
+    if (next == open) return;
+    rows::subtract(open, next, met);
+    for (std::size_t i = 0; i < met.size(); i += 2) {
+      found.push_back({met[i], met[i + 1], gap2_mm2(dz, voxel_mm_[2])});
+    }
+    std::swap(open, next);
+  };
+  meet(0);
+  for (int dz = 1; dz <= reach_z && !open.empty(); ++dz) {
+    meet(-dz);
+    meet(dz);
+  }
+  std::sort(found.begin(), found.end(),
+            [](const Stretch& a, const Stretch& b) { return a.first < b.first; });
+  return found;
+}
+
+const SurfaceDistance::Stretches& SurfaceDistance::whole_row(int y, bool solid) {
+  const RunLayer& slice = *slices_[slices_.size() / 2];
+  const int reach_x = reach(max_mm_, voxel_mm_[0]);
+  const int reach_y = reach(max_mm_, voxel_mm_[1]);
+  std::vector<std::optional<Stretches>>& rows = rows_[solid ? 1 : 0];
+  rows.resize(static_cast<std::size_t>(slice.height() + 2 * reach_y));
+  std::optional<Stretches>& row = rows[static_cast<std::size_t>(y + reach_y)];
+  if (!row) row = along_z(y, -reach_x, slice.width() + reach_x, solid, max_mm_);
+  return *row;
+}
+
+void SurfaceDistance::search(int y, int first, int last, bool solid, double radius_mm,
+                             double* squares) {
+  const double radius2 = radius_mm * radius_mm;
+  const bool near = radius_mm <= max_mm_ * kNearPart;
+  const int reach_x = reach(radius_mm, voxel_mm_[0]);
+  const int reach_y = reach(radius_mm, voxel_mm_[1]);
   const int begin = first - reach_x;
-  const int count = last - first + 2 * reach_x;
+  const int end = last + reach_x;
   // By x: the least gap(dy)^2 + gap(dz)^2 to a voxel of the other state.
-  std::vector<double> beside(static_cast<std::size_t>(count),
-                             std::numeric_limits<double>::infinity());
-  PlacesLeft left(count);
-  for (const Offset& offset : offsets_) {
-    // What comes later is farther than all that the run has straight beside it.
-    if (offset.gap2_mm2 >= radius_mm * radius_mm || left.next(reach_x) >= last - begin) break;
-    const RunLayer* slice = slices[static_cast<std::size_t>(reach_slices_ + offset.z)];
-    const std::span<const int> row =
-        slice == nullptr ? std::span<const int>() : slice->row(y + offset.y);
-    for_each_run(row, begin, begin + count, !solid, [&](int from, int to) {
-      for (int i = left.next(from - begin); i < to - begin; i = left.next(i)) {
-        beside[static_cast<std::size_t>(i)] = offset.gap2_mm2;
-        left.take(i);
+  std::vector<double> beside(static_cast<std::size_t>(end - begin), kFar);
+  for (int dy = -reach_y; dy <= reach_y; ++dy) {
+    const auto take = [&, gap2 = gap2_mm2(dy, voxel_mm_[1])](const Stretches& row) {
+      auto stretch = std::partition_point(row.begin(), row.end(),
+                                          [&](const Stretch& one) { return one.last <= begin; });
+      for (; stretch != row.end() && stretch->first < end; ++stretch) {
+        const double here2 = gap2 + stretch->gap2_mm2;
+        if (here2 >= radius2) continue;
+        double* const from = beside.data() + (std::max(stretch->first, begin) - begin);
+        double* const to = beside.data() + (std::min(stretch->last, end) - begin);
+        for (double* at = from; at < to; ++at) *at = std::min(*at, here2);
       }
-    });
-  }
-  for (int x = first; x < last; ++x) {
-    const double* here = beside.data() + (x - begin);
-    double best = std::min(*here, radius_mm * radius_mm);
-    for (int dx = 1; dx <= reach_x; ++dx) {
-      const double gap2 = std::pow(gap_mm(dx, voxel_x_mm_), 2);
-      if (gap2 >= best) break;
-      best = std::min(best, gap2 + std::min(here[-dx], here[dx]));
+    };
+    if (near) {
+      take(along_z(y + dy, begin, end, solid, radius_mm));
+    } else {
+      take(whole_row(y + dy, solid));
     }
-    *squares++ = best < radius_mm * radius_mm ? best : max_mm_ * max_mm_;
+  }
+
+  std::vector<double> gaps2(static_cast<std::size_t>(reach_x) + 1);  // by dx
+  for (int dx = 0; dx <= reach_x; ++dx) {
+    gaps2[static_cast<std::size_t>(dx)] = gap2_mm2(dx, voxel_mm_[0]);
+  }
+  std::fill(squares, squares + (last - first), max_mm_ * max_mm_);
+  const auto is_found = [](double square) { return square < kFar; };
+  // The first from x - reach_x on with anything beside it.
+  auto ahead = std::find_if(beside.begin(), beside.end(), is_found);
+  for (int x = first; x < last; ++x) {
+    const auto middle = beside.begin() + (x - begin);
+    if (ahead < middle - reach_x) ahead = std::find_if(middle - reach_x, beside.end(), is_found);
+    if (ahead > middle + reach_x) {
+      // Nothing is near: on to where `ahead` is.
+      x = std::min(last, begin + static_cast<int>(ahead - beside.begin()) - reach_x) - 1;
+      continue;
+    }
+    double best = std::min(*middle, radius2);
+    for (int dx = 1; dx <= reach_x && gaps2[static_cast<std::size_t>(dx)] < best; ++dx) {
+      best = std::min(
+          best, gaps2[static_cast<std::size_t>(dx)] + std::min(*(middle - dx), *(middle + dx)));
+    }
+    if (best < radius2) squares[x - first] = best;
   }
 }
 
-void SurfaceDistance::of_run(std::span<const RunLayer* const> slices, int y, int first, int last,
-                             bool solid, std::vector<double>& distances_mm) const {
-  assert(static_cast<int>(slices.size()) == 2 * reach_slices_ + 1);
+void SurfaceDistance::of_run(int y, int first, int last, bool solid,
+                             std::vector<double>& distances_mm) {
   const double none = max_mm_ * max_mm_;
   distances_mm.assign(static_cast<std::size_t>(last - first), none);
-  double* squares = distances_mm.data();
-  const int count = last - first;
-  for (double radius_mm = max_mm_ / 32;; radius_mm = std::min(max_mm_, 4 * radius_mm)) {
-    bool all = true;
-    for (int i = 0; i < count;) {
-      int end = i;
-      while (end < count && squares[end] >= none) ++end;
-      if (end > i) {
-        search(slices, y, first + i, first + end, solid, radius_mm, squares + i);
-        all = all && std::all_of(squares + i, squares + end, [&](double d) { return d < none; });
-      }
-      i = end + 1;
+  double* const squares = distances_mm.data();
+  double* const end = squares + distances_mm.size();
+  for (double radius_mm = max_mm_ * kNearPart;; radius_mm *= 4) {
+    bool found_all = true;
+    for (double* from = squares; (from = std::find(from, end, none)) != end;) {
+      double* const to = std::find_if(from, end, [&](double square) { return square < none; });
+      search(y, first + static_cast<int>(from - squares), first + static_cast<int>(to - squares),
+             solid, radius_mm, from);
+      found_all = found_all && std::find(from, to, none) == to;
+      from = to;
     }
-    if (all || radius_mm >= max_mm_) break;
+    if (found_all || radius_mm >= max_mm_) break;
   }
   for (double& distance : distances_mm) distance = std::sqrt(distance);
 }

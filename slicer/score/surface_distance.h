@@ -7,14 +7,15 @@
 //
 //   target   ######....      gap, in h, for the target's voxels:  ..., 2.5, 1.5, 0.5 at the edge
 //
-// A whole run is asked at once, since its voxels look at the same rows. Rows around it are visited
-// from the nearest on, so the first row that has the other state at some x gives the least
-// gap(dy)^2 + gap(dz)^2 of that x, and each x is written once; then follows the minimum over dx.
-// (The way is that of separable distance transforms: Meijster et al., A general algorithm for
-// computing distance transforms in linear time, 2000.) The search begins close by and goes on only
-// with what it has not found there: most wrong voxels lie in a thin skin.
+// The minimum is taken along one axis after the other (Meijster et al., A general algorithm for
+// computing distance transforms in linear time, 2000): along z for a whole row, which is a few
+// runs; of these rows along y; of that along x. With n rows or slices within max_mm, a row so costs
+// 2 n of them and not n^2, also in the middle of a solid. The search begins close by and goes on
+// only with what it has not found there: most wrong voxels lie in a thin skin.
 #pragma once
 
+#include <array>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -23,39 +24,42 @@
 
 namespace binderjet {
 
+// Of the voxels of one slice.
 class SurfaceDistance {
  public:
-  // Farther than `max_mm` is not searched.
-  SurfaceDistance(const Grid& grid, double max_mm);
+  // No voxel within `max_mm` lies more slices away.
+  static int reach_slices(const Grid& grid, double max_mm);
 
-  double max_mm() const { return max_mm_; }
-  // No voxel within max_mm lies more slices away.
-  int reach_slices() const { return reach_slices_; }
+  // Farther than `max_mm` is not searched. `slices` are 2 reach_slices() + 1 slices of the target,
+  // from the lowest, which must outlive this; null ones are powder, and so is what lies beyond a
+  // slice's box. The middle one must be there.
+  SurfaceDistance(const Grid& grid, double max_mm, std::span<const RunLayer* const> slices);
 
-  // `slices` are 2 reach_slices() + 1 slices of the target, from the lowest; null ones are powder,
-  // and so is what lies beyond a slice's box. The voxels [first, last) of row y of the middle one
-  // are all solid, or all powder. Writes the distance of each, max_mm where nothing is found.
-  //
-  // WARNING: in the middle of a solid, where the surface is r away, a run costs all rows within r:
-  // some 10,000 for 2 mm on the Z450's voxels.
-  void of_run(std::span<const RunLayer* const> slices, int y, int first, int last, bool solid,
-              std::vector<double>& distances_mm) const;
+  // The voxels [first, last) of row y of the middle slice are all solid, or all powder. Writes the
+  // distance of each, max_mm where nothing is found.
+  void of_run(int y, int first, int last, bool solid, std::vector<double>& distances_mm);
 
  private:
-  // A row beside the middle one.
-  struct Offset {
-    int y;
-    int z;
-    double gap2_mm2;  // gap(dy)^2 + gap(dz)^2
+  // Voxels [first, last) of a row of the middle slice, and how far straight above or below them the
+  // nearest voxel of the other state is.
+  struct Stretch {
+    int first;
+    int last;
+    double gap2_mm2;  // gap(dz)^2
   };
+  using Stretches = std::vector<Stretch>;
+
+  // Of the voxels [first, last) of row y those that have one within `radius_mm`, in order of x.
+  Stretches along_z(int y, int first, int last, bool solid, double radius_mm) const;
+  // The same of all voxels of the row and of those near its ends, within max_mm; kept.
+  const Stretches& whole_row(int y, bool solid);
   // Squared distances; max_mm squared where the surface is not within `radius_mm`.
-  void search(std::span<const RunLayer* const> slices, int y, int first, int last, bool solid,
-              double radius_mm, double* squares) const;
+  void search(int y, int first, int last, bool solid, double radius_mm, double* squares);
 
   double max_mm_;
-  double voxel_x_mm_;
-  int reach_slices_;
-  std::vector<Offset> offsets_;  // within max_mm, the nearest first
+  std::array<double, 3> voxel_mm_;
+  std::span<const RunLayer* const> slices_;
+  std::array<std::vector<std::optional<Stretches>>, 2> rows_;  // by state, from y = -reach on
 };
 
 }  // namespace binderjet

@@ -75,6 +75,7 @@ TEST(Manual, IsUnderstoodByGroff) {
 TEST(Manual, AgreesWithTheReadme) {
   const std::string readme = file_text(BINDERJET_SOURCE_DIR "/README.md");
   std::set<std::string> known = {"--help", "--version"};
+  known.insert({"--array", "--joblog", "--retry-failed"});  // of Slurm and GNU parallel
   std::set<std::string> named;
   for (const std::string& verb : verbs()) {
     known.merge(options_of(verb));

@@ -82,6 +82,11 @@ INSTANTIATE_TEST_SUITE_P(
         Slip{"usb = ", "usb = [\"12:zz\"]", "a.toml:21:8: usb needs \"vid:pid\" in hexadecimal"},
         Slip{"[mask]", "[mask]\nmin_hole = 4", "a.toml:23:1: unknown key min_hole in [mask]"},
         Slip{"min_hole_px = ", "min_hole_px = 1.5", "a.toml:23:15: min_hole_px must be a whole"},
+        Slip{"min_hole_px = ", "[strength]\nthinnest = 2",
+             "a.toml:24:1: unknown key thinnest in [strength]"},
+        Slip{"[mask]", "[strength]\nthinnest_mm = 0",
+             "a.toml:23:15: thinnest_mm: 0 is not above 0"},
+        Slip{"[mask]", "[strength]\nnarrowest_mm = 21", "a.toml:23:16: narrowest_mm: 21 is not"},
         Slip{"[mask]", "[masks]", "a.toml:22:2: unknown key masks in the profile"}));
 
 TEST(Profile, EveryOneThatIsInstalledIsTaken) {
@@ -91,6 +96,14 @@ TEST(Profile, EveryOneThatIsInstalledIsTaken) {
     ++count;
   }
   EXPECT_GT(count, 0);
+}
+
+TEST(Profile, HasNoRulesOfStrengthUnlessItNamesThem) {
+  EXPECT_FALSE(parse_profile(kProfile, "a.toml").strength.thinnest_mm);
+  const StrengthRules named =
+      parse_profile(std::string(kProfile) + "[strength]\nthinnest_mm = 2\n", "a.toml").strength;
+  EXPECT_EQ(named.thinnest_mm, 2);
+  EXPECT_FALSE(named.narrowest_mm);
 }
 
 TEST(Profile, GivesTheGridOfALayerThatItHasAndNamesThoseOtherwise) {

@@ -73,6 +73,38 @@ TEST_F(CheckVerb, LeavesAFinThatIsThickEnough) {
   EXPECT_EQ(check(block(1.5, 0, false))["lost"], 0);
 }
 
+TEST_F(CheckVerb, NamesAWallThatPrintsAndMayBreak) {
+  const nlohmann::json said = check(block(1, 0, false));
+  EXPECT_EQ(said["verdict"], "prints as it is, but may break");
+  EXPECT_EQ(said["thin"], 1);
+  EXPECT_EQ(said["narrow"], 0);
+  const auto& wall = only(said, "thin");
+  EXPECT_NEAR(wall["width_mm"].get<double>(), 1, 0.05);
+  EXPECT_NEAR(wall["at_mm"][0].get<double>(), 52.5, 0.05);
+  EXPECT_NEAR(wall["size_mm"][1].get<double>(), 6, 0.2);
+  EXPECT_EQ(check(block(2.1, 0, false))["verdict"], "prints as it is");
+}
+
+TEST_F(CheckVerb, SaysWhereAGridIsTooCoarseForARuleAndDoesNotAskWhereThereIsNone) {
+  std::string text = here_.run({"profile", "show", "z450"}).out;
+  const std::size_t at = text.find("[strength]");
+  ASSERT_NE(at, std::string::npos);
+  const std::string before = text.substr(0, at);
+  models::write_obj(block(1, 0, false), here_ / "part.obj");
+  const auto check_by = [&](const std::string& strength) {
+    std::ofstream(here_ / "own.toml") << before << strength;
+    return here_.run(
+        {"check", here_ / "part.obj", "-p", here_ / "own.toml", "--enhance", "none", "--json"});
+  };
+  const Ran coarse = check_by("[strength]\nthinnest_mm = 0.3\n");
+  EXPECT_THAT(coarse.err, HasSubstr("cannot tell less than 0.31 mm"));
+  EXPECT_TRUE(coarse.json()["thin"].is_null());
+  EXPECT_EQ(coarse.json()["verdict"], "prints as it is");
+  const Ran none = check_by("");
+  EXPECT_TRUE(none.json()["thin"].is_null());
+  EXPECT_THAT(none.err, testing::Not(HasSubstr("strength")));
+}
+
 TEST_F(CheckVerb, NamesASlotThatCloses) {
   EXPECT_EQ(check(block(0, 0.2, false))["fused"], 1);
   EXPECT_EQ(check(block(0, 1.5, false))["fused"], 0);

@@ -189,10 +189,10 @@ TEST(Depths, NameEachPlaceThatHangsTogetherOnce) {
   ASSERT_EQ(places.size(), 3U);
   EXPECT_DOUBLE_EQ(places[0].depth_mm, 0.95);
   EXPECT_EQ(places[0].voxel, (std::array<int, 3>{119, 20, 0}));
-  EXPECT_EQ(places[0].kind, WrongKind::kThick);
+  EXPECT_EQ(places[0].kind, WrongKind::kExtra);
   EXPECT_DOUBLE_EQ(places[1].depth_mm, 0.45);
   EXPECT_EQ(places[1].voxel, (std::array<int, 3>{45, 30, 4}));
-  EXPECT_EQ(places[1].kind, WrongKind::kThin) << "what is printed is within wear's reach";
+  EXPECT_EQ(places[1].kind, WrongKind::kMissing) << "what is printed is within wear's reach";
   EXPECT_DOUBLE_EQ(places[2].depth_mm, 0.25);
   EXPECT_EQ(places[2].voxel, (std::array<int, 3>{5, 2, 2}));
   EXPECT_EQ(depths.places(2).size(), 2U);
