@@ -24,9 +24,19 @@ double gap2_mm2(int voxels, double voxel_mm) {
 
 // The most voxels along an axis that are nearer than `radius_mm`.
 int reach(double radius_mm, double voxel_mm) {
-  int voxels = 0;
-  while (gap2_mm2(voxels + 1, voxel_mm) < radius_mm * radius_mm) ++voxels;
-  return voxels;
+  return static_cast<int>(std::ceil(radius_mm / voxel_mm + 0.5)) - 1;
+}
+
+// Whether the voxels of `open` are all `solid`, or all powder, in `row`.
+bool is_all(rows::Row open, rows::Row row, bool solid) {
+  std::size_t j = 0;
+  for (std::size_t i = 0; i < open.size(); i += 2) {
+    while (j < row.size() && row[j + 1] <= open[i]) j += 2;
+    const bool meets = j < row.size() && row[j] < open[i + 1];
+    if (!solid && meets) return false;
+    if (solid && !(meets && row[j] <= open[i] && open[i + 1] <= row[j + 1])) return false;
+  }
+  return true;
 }
 
 }  // namespace
@@ -54,12 +64,12 @@ SurfaceDistance::Stretches SurfaceDistance::along_z(int y, int first, int last, 
   const auto meet = [&](int dz) {
     const RunLayer* slice = slices_[static_cast<std::size_t>(middle + dz)];
     const rows::Row row = slice == nullptr ? rows::Row() : slice->row(y);
+    if (is_all(open, row, solid)) return;
     if (solid) {
       rows::intersect(open, row, next);
     } else {
       rows::subtract(open, row, next);
     }
-    if (next == open) return;
     rows::subtract(open, next, met);
     for (std::size_t i = 0; i < met.size(); i += 2) {
       found.push_back({met[i], met[i + 1], gap2_mm2(dz, voxel_mm_[2])});
@@ -97,8 +107,9 @@ void SurfaceDistance::search(int y, int first, int last, bool solid, double radi
   const int end = last + reach_x;
   // By x: the least gap(dy)^2 + gap(dz)^2 to a voxel of the other state.
   std::vector<double> beside(static_cast<std::size_t>(end - begin), kFar);
-  for (int dy = -reach_y; dy <= reach_y; ++dy) {
-    const auto take = [&, gap2 = gap2_mm2(dy, voxel_mm_[1])](const Stretches& row) {
+  for (int n = 0; n <= reach_y; ++n) {
+    const double gap2 = gap2_mm2(n, voxel_mm_[1]);
+    const auto take = [&](const Stretches& row) {
       auto stretch = std::partition_point(row.begin(), row.end(),
                                           [&](const Stretch& one) { return one.last <= begin; });
       for (; stretch != row.end() && stretch->first < end; ++stretch) {
@@ -109,10 +120,18 @@ void SurfaceDistance::search(int y, int first, int last, bool solid, double radi
         for (double* at = from; at < to; ++at) *at = std::min(*at, here2);
       }
     };
-    if (near) {
-      take(along_z(y + dy, begin, end, solid, radius_mm));
-    } else {
-      take(whole_row(y + dy, solid));
+    // Rows that are farther than all that the run has straight beside it change nothing.
+    if (std::all_of(beside.begin() + reach_x, beside.end() - reach_x,
+                    [&](double square) { return square <= gap2; })) {
+      break;
+    }
+    for (const int dy : {-n, n}) {
+      if (near) {
+        take(along_z(y + dy, begin, end, solid, radius_mm));
+      } else {
+        take(whole_row(y + dy, solid));
+      }
+      if (n == 0) break;
     }
   }
 

@@ -117,17 +117,6 @@ RunWindow thick_around(const Window<Sounded>& window) {
   return runs_around(window, window.reach().above, [](const Sounded& one) { return &one.thick; });
 }
 
-template <class Op>
-RunLayer combined(const RunLayer& a, const RunLayer& b, const Op& op) {
-  RunLayer out(a.width());
-  std::vector<int> row;
-  for (int y = 0; y < a.height(); ++y) {
-    op(a.row(y), b.row(y), row);
-    out.append_row(row);
-  }
-  return out;
-}
-
 // The diameter of the largest ball around the middle of a run [first, last) of row y that keeps
 // within what is looked at; no more than the rule is looked for.
 double width_around(const RunWindow& all, int first, int last, int y, const Cells& cells,
@@ -164,9 +153,11 @@ struct ThinLayer {
 ThinLayer thin_of(const Window<Sounded>& window, const Cells& cells, double rule_mm) {
   const RunWindow all =
       runs_around(window, window.reach().above, [](const Sounded& one) { return one.all.get(); });
-  ThinLayer out{combined(all.middle(), window.middle().thick, rows::subtract), {}};
-  for (int y = 0; y < out.thin.height(); ++y) {
-    const rows::Row row = out.thin.row(y);
+  ThinLayer out{RunLayer(all.middle().width()), {}};
+  std::vector<int> row;
+  for (int y = 0; y < all.middle().height(); ++y) {
+    rows::subtract(all.middle().row(y), window.middle().thick.row(y), row);
+    out.thin.append_row(row);
     for (std::size_t i = 0; i < row.size(); i += 2) {
       out.width_mm.push_back(width_around(all, row[i], row[i + 1], y, cells, rule_mm));
     }
@@ -185,13 +176,13 @@ Pipeline<ThinLayer> thin_layers(const Pipeline<RunLayer>& all, const Cells& cell
                  return Sounded{window.shared(0), eroded(around, cells.ball, Beyond::kPowder)};
                })
           .then("what they fill", reach, [cells](int, const Window<Sounded>& window) {
-            return Sounded{window.middle().all, dilated(thick_around(window), cells.ball)};
+            const Shared<RunLayer>& here = window.middle().all;
+            return Sounded{here, dilated_within(thick_around(window), cells.ball, *here)};
           });
   for (int i = 0; i < kSteps; ++i) {
     sounded = sounded.then("what is near", step_reach, [cells](int, const Window<Sounded>& window) {
       const Shared<RunLayer>& here = window.middle().all;
-      return Sounded{here,
-                     combined(dilated(thick_around(window), cells.step), *here, rows::intersect)};
+      return Sounded{here, dilated_within(thick_around(window), cells.step, *here)};
     });
   }
   return sounded.then("thin", reach, [cells, rule_mm](int, const Window<Sounded>& window) {

@@ -102,6 +102,30 @@ RunLayer dilated(const RunWindow& window, const Ellipsoid& by) {
                         });
 }
 
+RunLayer dilated_within(const RunWindow& window, const Ellipsoid& by, const RunLayer& within) {
+  std::vector<Neighbor> reached = neighbors(by);
+  std::stable_sort(reached.begin(), reached.end(),
+                   [](const Neighbor& a, const Neighbor& b) { return a.half > b.half; });
+  RunLayer out(within.width());
+  std::vector<int> left;  // voxels of the row that are not dilated so far
+  std::vector<int> row;
+  std::vector<int> next;
+  for (int y = 0; y < within.height(); ++y) {
+    left.assign(within.row(y).begin(), within.row(y).end());
+    for (const auto& [dy, dz, half] : reached) {
+      if (left.empty()) break;
+      const RunLayer* layer = window.at(dz);
+      if (layer == nullptr || layer->row(y + dy).empty()) continue;
+      grown(layer->row(y + dy), half, within.width(), row);
+      rows::subtract(left, row, next);
+      std::swap(left, next);
+    }
+    rows::subtract(within.row(y), left, row);
+    out.append_row(row);
+  }
+  return out;
+}
+
 RunLayer eroded(const RunWindow& window, const Ellipsoid& by, Beyond beyond) {
   const int width = window.middle().width();
   std::vector<int> row;

@@ -41,6 +41,10 @@ class Ellipsoid {
 // a layer all outside is powder.
 RunLayer dilated(const RunWindow& window, const Ellipsoid& by);
 
+// The voxels of `within`, a layer of the same size, that are dilated. A row of it ends once all its
+// voxels are, which most rows of a solid are at once.
+RunLayer dilated_within(const RunWindow& window, const Ellipsoid& by, const RunLayer& within);
+
 // What lies beyond the stack in z: powder, or more of the same.
 enum class Beyond { kPowder, kSame };
 RunLayer eroded(const RunWindow& window, const Ellipsoid& by, Beyond beyond);
