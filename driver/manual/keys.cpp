@@ -372,7 +372,7 @@ const std::map<std::string, std::vector<KeyTable> (*)()>& pages() {
                    "where it has none or none that this grid can tell"},
                   {"narrow", "number of gaps below its narrowest_mm; null as thin"}} +
              within("found[]", place_of_fault()) +
-             Keys{{"found[].width_mm", "thin and narrow: the width at its thickest, mm"}} +
+             Keys{{"found[].widest_mm", "thin and narrow: the width at its thickest, mm"}} +
              within("worst_places[]", wrong_place()) +
              Keys{{"excess",
                    "wrong voxels beyond the layers' height, as a share of the "

@@ -69,8 +69,8 @@ std::string found_text(const Json& found) {
                   found["at_mm"][2].get<double>(), found["size_mm"][0].get<double>(),
                   found["size_mm"][1].get<double>(), found["size_mm"][2].get<double>(),
                   found["layers"][0].get<int>(), found["layers"][1].get<int>() - 1);
-  if (found.contains("width_mm")) {
-    text += fmt::format(", {:.2f} mm at its widest", found["width_mm"].get<double>());
+  if (found.contains("widest_mm")) {
+    text += fmt::format(", {:.2f} mm at its widest", found["widest_mm"].get<double>());
   }
   return text;
 }

@@ -60,7 +60,7 @@ nlohmann::ordered_json located(std::string_view kind, const Region& region,
 nlohmann::ordered_json located(std::string_view kind, const ThinPlace& place,
                                const std::array<double, 3>& origin_mm, const Grid& grid) {
   nlohmann::ordered_json json = located(kind, place.region, origin_mm, grid);
-  json["width_mm"] = rounded(place.width_mm);
+  json["widest_mm"] = rounded(place.width_mm);
   return json;
 }
 

@@ -79,7 +79,7 @@ TEST_F(CheckVerb, NamesAWallThatPrintsAndMayBreak) {
   EXPECT_EQ(said["thin"], 1);
   EXPECT_EQ(said["narrow"], 0);
   const auto& wall = only(said, "thin");
-  EXPECT_NEAR(wall["width_mm"].get<double>(), 1, 0.05);
+  EXPECT_NEAR(wall["widest_mm"].get<double>(), 1, 0.05);
   EXPECT_NEAR(wall["at_mm"][0].get<double>(), 52.5, 0.05);
   EXPECT_NEAR(wall["size_mm"][1].get<double>(), 6, 0.2);
   EXPECT_EQ(check(block(2.1, 0, false))["verdict"], "prints as it is");
@@ -115,7 +115,8 @@ TEST_F(CheckVerb, NamesAPocketThatKeepsItsPowder) {
   EXPECT_EQ(said["trapped"], 1);
   const auto& pocket = said["found"][0];
   EXPECT_EQ(pocket["kind"], "trapped");
-  EXPECT_EQ(said["verdict"], "prints as it is, but keeps powder inside") << "no detail is lost";
+  EXPECT_EQ(said["verdict"], "prints as it is, but may break and keeps powder inside")
+      << "no detail is lost; its walls are thin";
   EXPECT_NEAR(pocket["volume_mm3"].get<double>(), 32, 2);
 }
 
