@@ -99,10 +99,10 @@ TEST(AddingAnEffect, CostsItsFileAndOneLineOfTheCatalogue) {
 TEST(AddingAnEffect, LeavesTheNamesOfItsParametersInItsFile) {
   std::map<std::string, std::string> files = sources();
   for (auto& [path, text] : files) text = without_comments(text);
-  // Keys of JSON that mean something else there.
-  const std::set<std::string> common = {"level", "amount", "from",   "to",    "at",     "by",
-                                        "wave",  "width",  "period", "at_mm", "layers", "axis",
-                                        "form",  "shape",  "after",  "share", "across", "acts"};
+  // Keys of JSON and tables of a profile that mean something else there.
+  const std::set<std::string> common = {
+      "level",  "amount", "from", "to",    "at",    "by",    "wave",   "width", "period",  "at_mm",
+      "layers", "axis",   "form", "shape", "after", "share", "across", "acts",  "strength"};
   std::set<std::string> names;
   for (const EffectKind& kind : effect_kinds()) {
     for (const NumberRule& rule : kind.numbers) names.insert(rule.name);
