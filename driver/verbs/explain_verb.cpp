@@ -45,7 +45,7 @@ std::vector<Shared<InverseLayer>> window_of(const MaskSource& job, int layer, in
     }
     auto mask = std::make_shared<const RunLayer>(job.read(k - job.first));
     window.push_back(std::make_shared<const InverseLayer>(
-        InverseLayer{targets[static_cast<std::size_t>(k - range.first)], mask, mask, {}, k}));
+        InverseLayer{targets[static_cast<std::size_t>(k - range.first)], mask, mask, k}));
   }
   return window;
 }

@@ -37,10 +37,8 @@ Pipeline<MaskLayer> paper_masks(const Pipeline<VoxelLayer>& target, const Grid& 
 
 // The masks that print nearest to the target (slicer/enhance/inverse/inverse_solver.h). A model
 // whose binder crosses layers takes turns: layers that share no print are improved together, twice
-// over; so does one whose gains follow the masks' density. Then layers with lost, fused or loose
-// faults are searched again, three times, with their neighbors' prints known. What is
-// still spurious goes, and what no single layer could set right is mended over many at
-// once (slicer/enhance/inverse/repair/mend.h).
+// over; so does one whose gains follow the masks' density. Then layers with lost, fused, spurious
+// or loose print are searched again around that, three times, with their neighbors' prints known.
 Pipeline<MaskLayer> inverse_masks(const Pipeline<VoxelLayer>& target,
                                   const std::shared_ptr<const InverseSolver>& solver);
 

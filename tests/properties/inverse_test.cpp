@@ -1,12 +1,17 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Inverse masks: never worse than plain ones, within the rules, and the same however they are made.
+// Inverse masks: nowhere worse than plain ones, within the rules, and the same however and wherever
+// they are made.
 #include <gtest/gtest.h>
 #include <oneapi/tbb/global_control.h>
 
+#include <algorithm>
+#include <array>
+#include <cmath>
 #include <cstdlib>
 #include <numeric>
 
 #include "slicer/enhance/inverse/inverse_solver.h"
+#include "slicer/enhance/inverse/search/layer_sets.h"
 #include "slicer/enhance/masks.h"
 #include "slicer/model/process_window.h"
 #include "slicer/score/voxel_counts.h"
@@ -101,6 +106,104 @@ TEST(Inverse, NeverPrintsALayerWorseThanPlainMasks) {
     const auto plain = wrong(c, whole::masks(c.target, c.grid));
     const auto inverse = wrong(c, streamed_inverse(c, {0, c.layers}, kBlockLayers));
     for (std::size_t k = 0; k < plain.size(); ++k) ASSERT_LE(inverse[k], plain[k]) << "layer " << k;
+  }
+}
+
+// The distance of a voxel to the nearest of the other state in its slice, up to `most_mm`.
+double depth_mm(const Volume& target, const Grid& grid, int x, int y, int z, double most_mm) {
+  const auto steps = [&](int axis) { return static_cast<int>(most_mm / grid.voxel_mm(axis)) + 1; };
+  double least = most_mm;
+  for (int b = y - steps(1); b <= y + steps(1); ++b) {
+    for (int a = x - steps(0); a <= x + steps(0); ++a) {
+      if (target.at(a, b, z) == target.at(x, y, z)) continue;
+      least = std::min(least, std::hypot((a - x) * grid.voxel_mm(0), (b - y) * grid.voxel_mm(1)));
+    }
+  }
+  return least;
+}
+
+// Of the voxels of a layer that are wrong in a print, though all slices of their column agree: the
+// deepest, and the deepest of those that are right in another print.
+struct DeepestWrong {
+  double of_all_mm = 0;
+  double beside_other_mm = 0;
+};
+DeepestWrong deepest_wrong(const InverseCase& c, const Volume& printed, const Volume& other,
+                           int layer) {
+  constexpr double kMostMm = 0.5;
+  DeepestWrong out;
+  const int rz = c.grid.detail_vx[2];
+  for (int y = 0; y < c.target.ny; ++y) {
+    for (int x = 0; x < c.target.nx; ++x) {
+      const int z = layer * rz;
+      const int wanted = c.target.at(x, y, z);
+      bool agree = true;
+      for (int s = 1; s < rz; ++s) agree = agree && c.target.at(x, y, z + s) == wanted;
+      if (!agree || printed.at(x, y, layer) == wanted) continue;
+      double depth = kMostMm;
+      for (int s = 0; s < rz; ++s) {
+        depth = std::min(depth, depth_mm(c.target, c.grid, x, y, z + s, kMostMm));
+      }
+      out.of_all_mm = std::max(out.of_all_mm, depth);
+      if (other.at(x, y, layer) == wanted) {
+        out.beside_other_mm = std::max(out.beside_other_mm, depth);
+      }
+    }
+  }
+  return out;
+}
+
+void expect_no_deeper_than_plain(const InverseCase& c) {
+  const Volume plain = whole::print(whole::masks(c.target, c.grid), c.model().form(), c.grid);
+  const Volume inverse =
+      whole::print(streamed_inverse(c, {0, c.layers}, kBlockLayers), c.model().form(), c.grid);
+  for (int k = 0; k < c.layers; ++k) {
+    SCOPED_TRACE(k);
+    const DeepestWrong deepest = deepest_wrong(c, inverse, plain, k);
+    const double plain_mm = deepest_wrong(c, plain, inverse, k).of_all_mm;
+    ASSERT_LE(deepest.of_all_mm, std::max(0.1, plain_mm) + 1e-9);
+    ASSERT_LE(deepest.beside_other_mm, 0.13);
+  }
+}
+
+TEST(Inverse, IsNowhereWrongDeeperThanPlainMasks) {
+  Random random;
+  for (int round = 0; round < 30; ++round) {
+    SCOPED_TRACE(round);
+    expect_no_deeper_than_plain(random_inverse_case(random, false));
+    if (testing::Test::HasFatalFailure()) return;
+  }
+}
+
+// The pixels of a Z450 and parts of what it closes and loses: a solid with a slot, a wall and a pin
+// of any width, turned.
+TEST(Inverse, TakesNoBiteBesideAFineFeature) {
+  Random random;
+  for (int round = 0; round < 12; ++round) {
+    SCOPED_TRACE(round);
+    InverseCase c;
+    c.grid = {{25.4 / 300, 25.4 / 450, 0.102}, {2, 2, 2}};
+    c.layers = 2;
+    c.target = Volume(96, 112, 4);
+    const double angle = random.number(0, 90) * 3.14159 / 180;
+    const double slot_mm = random.number(2, 8) * 0.05;
+    const double wall_mm = random.number(2, 8) * 0.05;
+    c.target.fill([&](int x, int y, int) {
+      const double dx = (x - 48) * c.grid.voxel_mm(0);
+      const double dy = (y - 56) * c.grid.voxel_mm(1);
+      const double u = dx * std::cos(angle) + dy * std::sin(angle);
+      const double v = dy * std::cos(angle) - dx * std::sin(angle);
+      const bool inside = x >= 16 && y >= 12 && x < 80 && y < 100;
+      // From left to right: solid, the slot, solid, powder, the wall.
+      return inside && std::abs(v) < 1.2 &&
+             ((u < 0.3 && std::abs(u + 0.4) > slot_mm / 2) || (u > 0.7 && u < 0.7 + wall_mm));
+    });
+    c.window = process_window({{"spread", {{"shape", "box"}}, {{"width_mm", {0.7, 0.3}}}},
+                               {"threshold", {}, {{"level", {random.chance(0.5) ? 0.5 : 0.25}}}}},
+                              c.grid);
+    c.rules = {4, 4};
+    expect_no_deeper_than_plain(c);
+    if (testing::Test::HasFatalFailure()) return;
   }
 }
 
@@ -242,7 +345,7 @@ TEST(Inverse, PrintsWhatIsNarrowerThanTheSpreadAndInOnePiece) {
   }
 }
 
-// Leaning spires over several of the blocks in which layers are mended.
+// Leaning spires over several of the blocks in which layers are computed.
 TEST(Inverse, GivesTheSameInPiecesOfATallJob) {
   InverseCase c;
   c.grid = {{0.1, 0.1, 0.1}, {2, 2, 2}};
@@ -262,6 +365,78 @@ TEST(Inverse, GivesTheSameInPiecesOfATallJob) {
     for (int k = piece.first; k < piece.last; ++k) {
       ASSERT_EQ(whole::slice(part, k - piece.first), whole::slice(all, k)) << "layer " << k;
     }
+  }
+}
+
+// A cross section that the binder rounds, closes and loses, at (x, y), in voxels.
+bool in_section(int x, int y) {
+  const bool slab = x >= 0 && y >= 0 && x < 36 && y < 30;
+  const bool slot = x >= 14 && x < 17 && y >= 6;
+  const bool wall = x >= 42 && x < 45 && y >= 0 && y < 30;
+  return (slab && !slot && x + y > 8) || wall;
+}
+
+InverseCase sections(int layers, const std::vector<std::array<int, 2>>& corners_px) {
+  InverseCase c;
+  c.grid = {{0.1, 0.08, 0.1}, {2, 2, 2}};
+  c.layers = layers;
+  c.target = Volume(200, 110, 2 * layers);
+  c.target.fill([&](int x, int y, int) {
+    return std::any_of(corners_px.begin(), corners_px.end(), [&](const auto& corner) {
+      return in_section(x - 2 * corner[0], y - 2 * corner[1]);
+    });
+  });
+  c.window = process_window({{"spread", {{"shape", "box"}}, {{"width_mm", {0.5, 0.4}}}},
+                             {"threshold", {}, {{"level", {0.4}}}}},
+                            c.grid);
+  c.rules = {4, 4};
+  return c;
+}
+
+std::int64_t pixels_apart(const RunLayer& a, const RunLayer& b) {
+  return without(a, b).count() + without(b, a).count();
+}
+
+TEST(Inverse, GivesEqualCrossSectionsEqualMasks) {
+  const auto masks_of = [](const InverseCase& c) {
+    return streamed_inverse(c, {0, c.layers}, kBlockLayers);
+  };
+  const auto cut = [](const RunLayer& mask, const std::array<int, 2>& corner) {
+    return window(mask, corner[0] - 9, corner[1] - 9, 42, 34);
+  };
+  const std::array<int, 2> here{10, 10};
+  const std::array<int, 2> moved{17, 13};
+  const std::array<int, 2> beside{62, 15};
+  const InverseCase one = sections(5, {here});
+  const Volume masks = masks_of(one);
+  const RunLayer first = whole::slice(masks, 0);
+  ASSERT_NE(first, whole::slice(whole::masks(one.target, one.grid), 0));
+  for (int k = 1; k < one.layers; ++k) {
+    EXPECT_EQ(pixels_apart(whole::slice(masks, k), first), 0) << "layer " << k;
+  }
+  // Moved by whole pixels.
+  const RunLayer elsewhere = whole::slice(masks_of(sections(1, {moved})), 0);
+  EXPECT_EQ(pixels_apart(cut(elsewhere, moved), cut(first, here)), 0);
+  // Twice in one part.
+  const RunLayer two = whole::slice(masks_of(sections(1, {here, beside})), 0);
+  EXPECT_EQ(pixels_apart(cut(two, here), cut(first, here)), 0);
+  EXPECT_EQ(pixels_apart(cut(two, beside), cut(first, here)), 0);
+}
+
+TEST(Inverse, OfALayerDoNotDependOnALayerFarAway) {
+  InverseCase c = spires(0.25);
+  ASSERT_EQ(c.model().window_reach(), 0);
+  const Volume before = streamed_inverse(c, {0, c.layers}, kBlockLayers);
+  const int far = c.layers - 2;
+  c.target.fill([&, all = c.target](int x, int y, int z) {
+    if (z / 2 == far) return x >= 30 && y >= 70 && x < 50 && y < 90;
+    return all.at(x, y, z) == 1;
+  });
+  const Volume after = streamed_inverse(c, {0, c.layers}, kBlockLayers);
+  EXPECT_NE(whole::slice(after, far), whole::slice(before, far));
+  // Pieces and features are seen with the layers beside, four times over.
+  for (int k = 0; k < far - 4; ++k) {
+    EXPECT_EQ(whole::slice(after, k), whole::slice(before, k)) << "layer " << k;
   }
 }
 

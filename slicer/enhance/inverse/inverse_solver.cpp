@@ -1,131 +1,170 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "slicer/enhance/inverse/inverse_solver.h"
 
+#include <algorithm>
 #include <cstdint>
 #include <numeric>
 #include <utility>
 
-#include "slicer/enhance/inverse/repair/mask_patch.h"
-#include "slicer/enhance/inverse/repair/spurious.h"
-#include "slicer/enhance/inverse/search/layer_sets.h"
-#include "slicer/enhance/inverse/search/tile_surroundings.h"
+#include "slicer/enhance/inverse/judge.h"
+#include "slicer/enhance/inverse/search/mask_search.h"
+#include "slicer/layers/rows.h"
 #include "slicer/voxels/slicing_operator.h"
 
 namespace binderjet {
 namespace {
 
-// A wrong voxel of the nominal model counts twice one of a corner of the window: this halves the
-// nominal error of equal weights and costs the window's worst case a hundredth.
-constexpr int kNominalWeight = 2;
-
-std::vector<StampedModel> weighted(const std::vector<PrinterModel>& models, const Grid& grid) {
-  std::vector<int> weights(models.size(), 1);
-  weights.front() = kNominalWeight;
-  return stamped(models, weights, grid);
+InverseLayer with_mask(InverseLayer layer, RunLayer mask) {
+  layer.mask = std::make_shared<const RunLayer>(std::move(mask));
+  return layer;
 }
 
-double level_share(const AssembledModel& form) {
-  double gains = 0;
-  for (const DoseTerm& term : form.terms) gains += term.gain;
-  return form.level / gains;
+// The printer's dose of a voxel of the middle layer with `own` as its mask, term by term. For
+// models that shift no mask.
+double exact_dose(const AssembledModel& form, const Grid& grid, const LayerWindow& layers,
+                  const RunLayer& own, int x_vx, int y_vx) {
+  const auto [rx, ry, rz] = grid.detail_vx;
+  double sum = 0;
+  for (const DoseTerm& term : form.terms) {
+    if (term.layer != 0 && layers.at(term.layer) == nullptr) continue;
+    const RunLayer& mask = term.layer == 0 ? own : *layers.at(term.layer)->mask;
+    std::int64_t landed = 0;
+    for (int j = term.y.first; j <= term.y.last(); ++j) {
+      for (int i = term.x.first; i <= term.x.last(); ++i) {
+        const int x = x_vx - i;
+        const int y = y_vx - j;
+        const bool inside = x >= 0 && y >= 0 && x < rx * mask.width() && y < ry * mask.height();
+        if (inside && mask.at(x / rx, y / ry)) landed += term.x.at(i) * term.y.at(j);
+      }
+    }
+    const auto all = static_cast<double>(term.x.total()) * static_cast<double>(term.y.total());
+    sum += term.gain * static_cast<double>(landed) / all;
+  }
+  return sum;
 }
 
 }  // namespace
 
 InverseSolver::InverseSolver(std::vector<PrinterModel> window, const Grid& grid,
                              const MaskRules& rules)
-    : window_(window),
-      search_{window.front(),
-              weighted(window, grid),
-              offsets_of(window.front().form()),
-              level_share(window.front().form()),
-              rules,
-              grid} {
+    : window_(std::move(window)), search_(window_, rules, grid) {}
+
+int InverseSolver::reach() const { return 2 * search_.printer.window_reach() + 1; }
+
+int InverseSolver::stride() const {
   const std::set<int>& printed = search_.offsets.printed;
-  stride_ = *printed.rbegin() - *printed.begin() + 1;
+  return *printed.rbegin() - *printed.begin() + 1;
+}
+
+bool InverseSolver::sees_the_section_alone() const {
+  const BedDependence& placed = search_.printer.form().placed;
+  return search_.printer.window_reach() == 0 && placed.gains.empty() && placed.shifts.empty();
+}
+
+bool InverseSolver::follows_density() const {
+  return search_.printer.form().placed.density_radius_mm.has_value();
 }
 
 InverseLayer InverseSolver::plain(int number, Shared<VoxelLayer> target) const {
-  auto sliced = std::make_shared<const RunLayer>(slicing_operator(*target, search_.grid));
-  auto obeying = std::make_shared<const RunLayer>(obeying_mask(*sliced, search_.rules).mask);
-  return {std::move(target), std::move(sliced), std::move(obeying), {}, number};
+  const RunLayer sliced = slicing_operator(*target, search_.grid);
+  auto obeying = std::make_shared<const RunLayer>(obeying_mask(sliced, search_.rules).mask);
+  return {std::move(target), obeying, obeying, number};
 }
 
-InverseLayer InverseSolver::improve(LayerWindow layers, bool from_scratch) const {
-  LayerSearch search(search_, layers);
-  search.run(from_scratch);
-  InverseLayer out = *layer_at(layers, 0);
-  auto mask = std::make_shared<const RunLayer>(search.mask());
-  if (no_worse_than_plain(layers, search_.printer, search_.offsets, *mask))
-    out.mask = std::move(mask);
-  return out;
-}
-
-InverseLayer InverseSolver::rescue(LayerWindow layers, RescueAim aim) const {
-  return rescued(search_, window_, layers, aim);
-}
-
-InverseLayer InverseSolver::settle(LayerWindow layers) const {
-  InverseLayer out = *layer_at(layers, 0);
-  out.mask = without_spurious(layers);
-  const bool worse = wrong_voxels(out, print_with(layers, 0, search_.printer, *out.mask)) >
-                     wrong_voxels(out, print_plain(layers, 0, search_.printer));
-  if (worse) out.mask = plain(out.number, out.target).mask;
-  return out;
-}
-
-// Only the plain mask's pixels stay around what is printed where no part is, further and further
-// until nothing is.
-Shared<RunLayer> InverseSolver::without_spurious(LayerWindow layers) const {
-  const InverseLayer& layer = *layer_at(layers, 0);
-  Shared<RunLayer> mask = layer.mask;
-  constexpr int kMaxPx = 32;
-  for (int around_px = 2; around_px <= kMaxPx; around_px *= 2) {
-    const RunLayer spurious =
-        spurious_print(*layer.target, print_with(layers, 0, search_.printer, *mask));
-    if (spurious.count() == 0) break;
-    mask = std::make_shared<const RunLayer>(
-        patched(*mask, common(*mask, *layer.plain),
-                pixels_around(spurious, search_.grid, around_px), search_.rules));
+InverseLayer InverseSolver::improve(const LayerWindow& layers) const {
+  const Judge judge(search_, layers);
+  MaskSearch search(search_, layers);
+  search.run();
+  RunLayer mask = search.mask();
+  constexpr int kMostRounds = 4;
+  FoundFaults deep = judge.too_deep(mask);
+  for (int round = 0; round < kMostRounds && deep.weight > 0; ++round) {
+    search.run_again(deep.faults);
+    mask = search.mask();
+    deep = judge.too_deep(mask);
   }
-  return mask;
+  return with_mask(layers.middle(), judge.held(mask));
 }
 
-PixelReasons InverseSolver::reasons(LayerWindow layers, int x, int y) const {
+InverseLayer InverseSolver::repair(const LayerWindow& layers) const {
+  const Judge judge(search_, layers);
+  RunLayer best = *layers.middle().mask;
+  FoundFaults found = judge.broken(best);
+  if (found.weight == 0) return layers.middle();
+  MaskSearch search(search_, layers);
+  std::int64_t least = found.weight;
+  constexpr int kMostRounds = 10;
+  for (int round = 0; round < kMostRounds && least > 0; ++round) {
+    search.run_again(found.faults);
+    const RunLayer next = search.mask();
+    found = judge.broken(next);
+    // What is too deep goes back to the mask so far, and that may break it again.
+    RunLayer held = judge.held(next);
+    const std::int64_t weight = held == next ? found.weight : judge.broken(held).weight;
+    if (weight >= least) continue;
+    least = weight;
+    best = std::move(held);
+  }
+  return with_mask(layers.middle(), std::move(best));
+}
+
+PixelReasons InverseSolver::reasons(const LayerWindow& layers, int x, int y) const {
   const auto [rx, ry, rz] = search_.grid.detail_vx;
-  const Rect pixel{x, y, x + 1, y + 1};
-  const Rect voxels{x * rx, y * ry, (x + 1) * rx, (y + 1) * ry};
-  Plane<std::uint8_t> mask;
-  const WindowPlaces places(search_.printer, search_.grid, layers, search_.offsets);
-  TileSurroundings around(layers, search_.offsets, places, mask);
-  LocalDose dose(search_.models, search_.grid, pixel, around);
-  mask.reset(dose.mask_rect().grown(search_.rules.largest_px(), search_.rules.largest_px()), 0);
-  add_layer(*layer_at(layers, 0)->mask, std::uint8_t{1}, mask);
-  around.look_at(dose);
-  dose.reset();
+  const InverseLayer& layer = layers.middle();
+  RunLayer flipped(layer.mask->width());
+  RunLayer one(layer.mask->width());
+  const int pixel[] = {x, x + 1};
+  std::vector<int> row;
+  for (int v = 0; v < layer.mask->height(); ++v) {
+    rows::difference(layer.mask->row(v), v == y ? rows::Row(pixel) : rows::Row(), row);
+    flipped.append_row(row);
+    one.append_row(v == y ? rows::Row(pixel) : rows::Row());
+  }
 
   PixelReasons why;
-  std::uint8_t& state = *mask.at(x, y);
-  const int sign = state != 0 ? -1 : 1;
-  why.on = state != 0;
+  why.on = layer.mask->at(x, y);
   why.level = search_.printer.form().level;
-  Plane<int> solid(voxels);
-  for (const RunLayer& slice : layer_at(layers, 0)->target->slices) add_layer(slice, 1, solid);
-  const auto doses = [&] {
+  const AssembledModel& form = search_.printer.form();
+  const WindowPlaces places(search_.printer, search_.grid, layers, search_.offsets);
+  Doses doses(search_, layers, one);
+  const auto doses_of = [&](const RunLayer& mask) {
+    doses.fill_nominal(mask);
     std::vector<double> out;
-    for (int v = voxels.y0; v < voxels.y1; ++v) {
-      for (int u = voxels.x0; u < voxels.x1; ++u) out.push_back(dose.dose(u, v));
+    for (int v = y * ry; v < (y + 1) * ry; ++v) {
+      for (int u = x * rx; u < (x + 1) * rx; ++u) {
+        out.push_back(places.shifts(0) != nullptr
+                          ? doses.dose(u, v)
+                          : places.gain(0, u, v) *
+                                exact_dose(form, search_.grid, layers, mask, u, v));
+      }
     }
     return out;
   };
-  const int* first = solid.at(voxels.x0, voxels.y0);
-  why.target_share = std::accumulate(first, first + std::ptrdiff_t{rx} * ry, 0.0) / (rx * ry * rz);
-  why.nominal_cost = dose.nominal_cost(x, y, sign);
-  why.window_cost = dose.flip_cost(x, y, sign);
-  why.dose = doses();
-  dose.flip(x, y, sign);
-  state ^= 1;
-  why.dose_flipped = doses();
+  why.dose = doses_of(*layer.mask);
+  why.dose_flipped = doses_of(flipped);
+  int solid = 0;
+  for (const RunLayer& slice : layer.target->slices) {
+    for (int v = y * ry; v < (y + 1) * ry; ++v) {
+      for (int u = x * rx; u < (x + 1) * rx; ++u) solid += static_cast<int>(slice.at(u, v));
+    }
+  }
+  why.target_share = static_cast<double>(solid) / (rx * ry * rz);
+  const auto grows = [&](const PrinterModel& model) {
+    std::int64_t sum = 0;
+    for (const int offset : search_.offsets.printed) {
+      if (layers.at(offset) == nullptr) continue;
+      sum += wrong_voxels(*layers.at(offset), print_with(layers, offset, model, flipped)) -
+             wrong_voxels(*layers.at(offset), print_with(layers, offset, model, *layer.mask));
+    }
+    return static_cast<int>(sum);
+  };
+  why.nominal_cost = grows(window_.front());
+  why.window_cost = kNominalWeight * why.nominal_cost;
+  for (std::size_t m = 1; m < window_.size(); ++m) why.window_cost += grows(window_[m]);
+  Plane<std::uint8_t> mask;
+  const int most = search_.rules.largest_px();
+  mask.reset(Rect{x, y, x + 1, y + 1}.grown(2 * most, 2 * most), 0);
+  add_layer(flipped, std::uint8_t{1}, mask);
   why.rules_allow = RuleCheck(search_.rules).fits_around(mask, x, y);
   return why;
 }

@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "slicer/enhance/inverse/search/inverse_layer.h"
 
-#include <algorithm>
-
 #include "slicer/score/voxel_counts.h"
 
 namespace binderjet {
@@ -10,16 +8,16 @@ namespace {
 
 // The masks around the layer at `offset`, which need not be the middle one.
 template <class MaskOf>
-RunWindow gather(LayerWindow layers, int offset, const PrinterModel& model, MaskOf mask_of) {
+RunWindow gather(const LayerWindow& layers, int offset, const PrinterModel& model, MaskOf mask_of) {
   return RunWindow::around(model.window_reach(), [&](int from_there) -> const RunLayer* {
-    const InverseLayer* layer = layer_at(layers, offset + from_there);
+    const InverseLayer* layer = layers.at(offset + from_there);
     return layer == nullptr ? nullptr : mask_of(*layer, offset + from_there);
   });
 }
 
 template <class MaskOf>
-RunLayer print(LayerWindow layers, int offset, const PrinterModel& model, MaskOf mask_of) {
-  return model.print(gather(layers, offset, model, mask_of), layer_at(layers, 0)->number + offset);
+RunLayer print(const LayerWindow& layers, int offset, const PrinterModel& model, MaskOf mask_of) {
+  return model.print(gather(layers, offset, model, mask_of), layers.at(0)->number + offset);
 }
 
 }  // namespace
@@ -33,17 +31,17 @@ ModelOffsets offsets_of(const AssembledModel& form) {
   return offsets;
 }
 
-RunWindow masks_around(LayerWindow layers, int offset, const PrinterModel& model) {
+RunWindow masks_around(const LayerWindow& layers, int offset, const PrinterModel& model) {
   return gather(layers, offset, model,
                 [](const InverseLayer& layer, int) { return layer.mask.get(); });
 }
 
-RunLayer print_plain(LayerWindow layers, int offset, const PrinterModel& model) {
+RunLayer print_plain(const LayerWindow& layers, int offset, const PrinterModel& model) {
   return print(layers, offset, model,
                [](const InverseLayer& layer, int) { return layer.plain.get(); });
 }
 
-RunLayer print_with(LayerWindow layers, int offset, const PrinterModel& model,
+RunLayer print_with(const LayerWindow& layers, int offset, const PrinterModel& model,
                     const RunLayer& own) {
   return print(layers, offset, model, [&own](const InverseLayer& layer, int at) {
     return at == 0 ? &own : layer.mask.get();
@@ -53,18 +51,6 @@ RunLayer print_with(LayerWindow layers, int offset, const PrinterModel& model,
 std::int64_t wrong_voxels(const InverseLayer& layer, const RunLayer& printed) {
   const VoxelCounts counts = count_voxels(*layer.target, printed);
   return counts.missing + counts.extra;
-}
-
-bool no_worse_than_plain(LayerWindow layers, const PrinterModel& model, const ModelOffsets& offsets,
-                         const RunLayer& own) {
-  return std::all_of(offsets.printed.begin(), offsets.printed.end(), [&](int offset) {
-    const InverseLayer* layer = layer_at(layers, offset);
-    if (layer == nullptr) return true;
-    const std::int64_t now = wrong_voxels(*layer, print_with(layers, offset, model, own));
-    if (now <= wrong_voxels(*layer, print_plain(layers, offset, model))) return true;
-    const RunLayer& before = *layer_at(layers, 0)->mask;
-    return now <= wrong_voxels(*layer, print_with(layers, offset, model, before));
-  });
 }
 
 }  // namespace binderjet

@@ -7,18 +7,18 @@
 
 namespace binderjet {
 
-WindowPlaces::WindowPlaces(const PrinterModel& model, const Grid& grid, LayerWindow layers,
+WindowPlaces::WindowPlaces(const PrinterModel& model, const Grid& grid, const LayerWindow& layers,
                            const ModelOffsets& offsets)
-    : model_(model), grid_(grid), number_(layer_at(layers, 0)->number) {
+    : model_(model), grid_(grid), number_(layers.at(0)->number) {
   const AssembledModel& form = model.form();
-  const int width = layer_at(layers, 0)->mask->width();
+  const int width = layers.at(0)->mask->width();
   if (!form.placed.shifts.empty()) {
     for (const int offset : offsets.masks) {
       shifts_.emplace(offset, ShiftedMask(grid_, form.place, form.placed, width, number_ + offset));
     }
   }
   for (const int offset : offsets.printed) {
-    if (!form.placed.density_radius_mm || layer_at(layers, offset) == nullptr) continue;
+    if (!form.placed.density_radius_mm || layers.at(offset) == nullptr) continue;
     if (auto density = density_of(masks_around(layers, offset, model), grid_, form.placed)) {
       densities_.emplace(offset, *std::move(density));
     }

@@ -18,7 +18,7 @@ namespace binderjet {
 class WindowPlaces {
  public:
   // Model and grid must outlive this.
-  WindowPlaces(const PrinterModel& model, const Grid& grid, LayerWindow layers,
+  WindowPlaces(const PrinterModel& model, const Grid& grid, const LayerWindow& layers,
                const ModelOffsets& offsets);
 
   // Null if no mask is shifted; then nor is any other.

@@ -1,0 +1,49 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// All that a search knows beside the layers: the printer model, exact and as stamps.
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "slicer/enhance/inverse/search/inverse_layer.h"
+#include "slicer/enhance/rules/mask_rules.h"
+#include "slicer/layers/grid.h"
+#include "slicer/model/printer_model.h"
+
+namespace binderjet {
+
+// How many wrong voxels under a corner of the process window one of the printer as it is outweighs.
+// The corners then settle what is all the same to the printer: with 2 the worst case of the window
+// falls by a twentieth, and the excess doubles.
+constexpr int kNominalWeight = 20;
+
+// A level at which the dose binds powder, and how much a wrong voxel counts there.
+struct DoseLevel {
+  int least = 0;
+  int weight = 1;
+};
+
+// Models of the process window whose terms are equal: one dose, compared with the level of each.
+//
+// Models with gains share nothing. A voxel with dose d and gain g is bound iff g d >= level, that
+// is iff d + credit >= level with credit = level - level / g. So each level has credits of its own,
+// which are added to the dose once.
+struct StampedModel {
+  std::vector<DoseTerm> terms;
+  std::vector<DoseLevel> levels;
+};
+
+struct SearchModel {
+  // The first of `window` is the printer, the others are what it may drift to.
+  SearchModel(std::span<const PrinterModel> window, const MaskRules& its_rules,
+              const Grid& its_grid);
+
+  PrinterModel printer;              // exact: it judges
+  std::vector<StampedModel> models;  // of the window, the printer first
+  int unit;                          // a dose of 1; doses of all models fit 16 bits
+  ModelOffsets offsets;
+  MaskRules rules;
+  Grid grid;
+};
+
+}  // namespace binderjet
