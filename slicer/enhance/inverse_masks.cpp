@@ -38,8 +38,11 @@ Pipeline<MaskLayer> inverse_masks(const Pipeline<VoxelLayer>& target,
   if (solver->stride() > 1 || solver->follows_density()) {
     add_round("improve again", solver->stride(), improve);
   }
-  // What spans two layers takes one round for each, and one for what these leave.
-  for (int round = 0; round < 3; ++round) add_round("repair", solver->stride(), repair);
+  // What spans two layers takes a round for each; what two layers then mend in opposite ways takes
+  // turns. Equal sections are mended alike in the first two.
+  add_round("repair", solver->stride(), repair);
+  add_round("repair", solver->stride(), repair);
+  add_round("repair", solver->stride() + 1, repair);
   return layers.then("take mask", {}, [](int, const LayerWindow& window) {
     return MaskLayer{*window.middle().mask, window.middle().target, {}};
   });

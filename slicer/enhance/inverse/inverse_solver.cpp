@@ -92,17 +92,20 @@ InverseLayer InverseSolver::repair(const LayerWindow& layers) const {
   FoundFaults found = judge.broken(best);
   if (found.weight == 0) return layers.middle();
   MaskSearch search(search_, layers);
-  std::int64_t least = found.weight;
+  // What is mended may cost wrong voxels, but no more than so many for each that is at fault.
+  constexpr std::int64_t kFaultWeight = 5;
+  std::int64_t least = kFaultWeight * found.weight + judge.wrong_voxels(best);
   constexpr int kMostRounds = 10;
-  for (int round = 0; round < kMostRounds && least > 0; ++round) {
+  for (int round = 0; round < kMostRounds && found.weight > 0; ++round) {
     search.run_again(found.faults);
     const RunLayer next = search.mask();
     found = judge.broken(next);
     // What is too deep goes back to the mask so far, and that may break it again.
     RunLayer held = judge.held(next);
     const std::int64_t weight = held == next ? found.weight : judge.broken(held).weight;
-    if (weight >= least) continue;
-    least = weight;
+    const std::int64_t cost = kFaultWeight * weight + judge.wrong_voxels(held);
+    if (cost >= least) continue;
+    least = cost;
     best = std::move(held);
   }
   return with_mask(layers.middle(), std::move(best));

@@ -13,6 +13,7 @@
 #include "slicer/enhance/inverse/search/layer_sets.h"
 #include "slicer/enhance/inverse/spurious.h"
 #include "slicer/layers/rows.h"
+#include "slicer/score/faults.h"
 #include "slicer/score/lost_and_fused.h"
 
 namespace binderjet {
@@ -90,7 +91,9 @@ double deepest_mm(const RunLayer& voxels, const VoxelLayer& target, const Grid& 
   return deepest;
 }
 
-constexpr std::int64_t kPieceWeight = 1000;  // voxels
+// What a piece that comes off and what a feature that is lost or fused weigh, in voxels.
+constexpr std::int64_t kPieceWeight = 200;
+constexpr std::int64_t kFeatureWeight = 100;
 
 }  // namespace
 
@@ -136,6 +139,7 @@ FoundFaults Judge::too_deep(const RunLayer& own) const {
 
 FoundFaults Judge::broken(const RunLayer& own) const {
   std::int64_t pieces = 0;
+  std::size_t features = 0;
   FoundFaults out = faults([&](int offset, const Layer&) {
     std::array<std::optional<ComparedLayer>, 3> seen;
     for (const int beside : {-1, 0, 1}) {
@@ -150,24 +154,36 @@ FoundFaults Judge::broken(const RunLayer& own) const {
     const LostAndFused found = find_lost_and_fused(window[0], *window[1], window[2], by_.grid);
     const LooseInWindow loose = find_loose_in_window(window);
     pieces += loose.count;
+    FaultFinder finder(by_.grid.detail_vx[2], {.kinds = {FaultKind::kLost, FaultKind::kFused}});
+    features += finder.add(*window[1]->target, *window[1]->printed, found).size();
+    features += finder.finish().size();
     SearchFaults of{0, loose.gap, spurious_print(*window[1]->target, *window[1]->printed)};
     for (const RunLayer& slice : found.lost) of.missing = either(of.missing, slice);
     for (const RunLayer& slice : found.fused) of.surplus = either(of.surplus, slice);
     return of;
   });
-  out.weight += kPieceWeight * pieces;
+  out.weight += kPieceWeight * pieces + kFeatureWeight * static_cast<std::int64_t>(features);
   FoundFaults deep = too_deep(own);
   out.weight += deep.weight;
   for (SearchFaults& of : deep.faults) out.faults.push_back(std::move(of));
   return out;
 }
 
+std::int64_t Judge::wrong_voxels(const RunLayer& own) const {
+  std::int64_t sum = 0;
+  for (const auto& [offset, layer] : printed_) {
+    sum +=
+        binderjet::wrong_voxels(*layers_.at(offset), print_with(layers_, offset, by_.printer, own));
+  }
+  return sum;
+}
+
 bool Judge::no_worse_than_plain(const RunLayer& own) const {
   return std::all_of(printed_.begin(), printed_.end(), [&](const auto& of) {
     const auto& [offset, layer] = of;
     const InverseLayer& at = *layers_.at(offset);
-    return wrong_voxels(at, print_with(layers_, offset, by_.printer, own)) <=
-           wrong_voxels(at, layer.plain);
+    return binderjet::wrong_voxels(at, print_with(layers_, offset, by_.printer, own)) <=
+           binderjet::wrong_voxels(at, layer.plain);
   });
 }
 

@@ -18,8 +18,8 @@ namespace binderjet {
 constexpr double kDeepMm = 0.125;
 constexpr double kShallowMm = 0.1;
 
-// Faults by layer, and what they weigh: their voxels, and a piece that comes off much more. Both
-// are empty or neither.
+// Faults by layer, and what they weigh: their voxels, and more for each feature and each piece.
+// Both are empty or neither.
 struct FoundFaults {
   std::vector<SearchFaults> faults;
   std::int64_t weight = 0;
@@ -36,6 +36,8 @@ class Judge {
   // (slicer/enhance/inverse/spurious.h) or comes off (slicer/enhance/inverse/loose_in_window.h),
   // seen with the layers beside as they are.
   FoundFaults broken(const RunLayer& own) const;
+  // The wrong voxels of all layers that it prints into.
+  std::int64_t wrong_voxels(const RunLayer& own) const;
   // No layer that it prints into has more wrong voxels than with plain masks.
   bool no_worse_than_plain(const RunLayer& own) const;
 
