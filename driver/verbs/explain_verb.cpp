@@ -66,7 +66,7 @@ void explain(const ExplainOptions& options, const Console& console) {
   const InverseSolver solver(process_window(header.profile.effects, header.grid, job.place()),
                              header.grid, header.profile.mask);
   const PixelReasons why =
-      solver.reasons(window_of(job, layer, solver.reach(), console.work()), x, y);
+      solver.reasons(window_of(job, layer, solver.improve_reach(), console.work()), x, y);
   const auto verdict = [&](std::int64_t grows) {
     const std::string what = why.on ? "clearing" : "setting";
     if (grows == 0) return what + " it changes no count of wrong voxels";

@@ -89,7 +89,8 @@ struct Lengths {
 
 std::string formula(const StepInfo& step, const std::string& written, const Lengths& by) {
   const std::map<std::string, int> values{
-      {"0", 0}, {"1", 1}, {"w", by.w}, {"2 w + 1", 2 * by.w + 1}, {"c", by.c}, {"d", by.d}};
+      {"0", 0},    {"1", 1},   {"w", by.w}, {"2 w", 2 * by.w}, {"2 w + 2", 2 * by.w + 2},
+      {"c", by.c}, {"d", by.d}};
   EXPECT_TRUE(values.contains(written)) << written;
   if (step.block_layers > 0) return "works in blocks";
   if (step.reach != LayerReach::both_sides(values.at(written))) return "looks elsewhere";

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A job's layers on their way through the inverse solver, from volumes that a test makes.
+// A job's layers on their way through the inverse solver, printed, from volumes that a test makes.
 #pragma once
 
 #include <memory>
@@ -19,7 +19,7 @@ struct InverseScene {
   // `target` has every slice, `masks` one a layer; the plain masks are those of the target.
   InverseScene(std::span<const PrinterModel> window, const Grid& grid, const MaskRules& rules,
                const Volume& target, const Volume& masks)
-      : model(window, rules, grid), reach_(2 * model.printer.window_reach() + 1) {
+      : model(window, rules, grid), reach_(2 * model.printer.window_reach() + 2) {
     const auto voxels = voxel_stream(target, grid.detail_vx[2], {0, masks.nz})->next(masks.nz);
     const Volume plain = whole::masks(target, grid);
     const auto beyond = static_cast<std::size_t>(reach_);
@@ -30,6 +30,13 @@ struct InverseScene {
           std::make_shared<const RunLayer>(slice(masks, k)), k}));
     }
     layers_.resize(layers_.size() + beyond);
+    for (int k = 0; k < masks.nz; ++k) {
+      InverseLayer layer = around(k).middle();
+      layer.printed =
+          std::make_shared<const RunLayer>(print_with(around(k), 0, model.printer, *layer.mask));
+      layers_[beyond + static_cast<std::size_t>(k)] =
+          std::make_shared<const InverseLayer>(std::move(layer));
+    }
   }
   // The same, beginning with the plain masks.
   InverseScene(std::span<const PrinterModel> window, const Grid& grid, const MaskRules& rules,

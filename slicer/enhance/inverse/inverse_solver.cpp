@@ -49,7 +49,11 @@ InverseSolver::InverseSolver(std::vector<PrinterModel> window, const Grid& grid,
                              const MaskRules& rules)
     : window_(std::move(window)), search_(window_, rules, grid) {}
 
-int InverseSolver::reach() const { return 2 * search_.printer.window_reach() + 1; }
+int InverseSolver::improve_reach() const { return 2 * search_.printer.window_reach(); }
+
+int InverseSolver::print_reach() const { return search_.printer.window_reach(); }
+
+int InverseSolver::repair_reach() const { return 2 * search_.printer.window_reach() + 2; }
 
 int InverseSolver::stride() const {
   const std::set<int>& printed = search_.offsets.printed;
@@ -86,16 +90,44 @@ InverseLayer InverseSolver::improve(const LayerWindow& layers) const {
   return with_mask(layers.middle(), judge.held(mask));
 }
 
+InverseLayer InverseSolver::print(const LayerWindow& layers) const {
+  InverseLayer layer = layers.middle();
+  layer.printed =
+      std::make_shared<const RunLayer>(print_with(layers, 0, search_.printer, *layer.mask));
+  return layer;
+}
+
+InverseLayer InverseSolver::find_broken(const LayerWindow& layers) const {
+  InverseLayer layer = layers.middle();
+  layer.broken = std::make_shared<const FoundFaults>(binderjet::find_broken(layers, search_.grid));
+  layer.judged = prints_around(layers, 0, 1);
+  return layer;
+}
+
 InverseLayer InverseSolver::repair(const LayerWindow& layers) const {
+  InverseLayer layer = layers.middle();
+  const int around = search_.printer.window_reach() + 1;
+  bool sound = true;
+  for (int at = -around; at <= around; ++at) {
+    if (layers.at(at) == nullptr) continue;
+    if (!is_known(layers, at) || layers.at(at)->broken->weight > 0) sound = false;
+  }
+  const bool alone = search_.printer.window_reach() == 0;
+  if (alone && sound) return layer;
+  std::vector<Shared<RunLayer>> seen = prints_around(layers, 0, around + 1);
+  if (alone && layer.settled == seen) return layer;
+  layer.settled = std::move(seen);
+
   const Judge judge(search_, layers);
-  RunLayer best = *layers.middle().mask;
-  FoundFaults found = judge.broken(best);
-  if (found.weight == 0) return layers.middle();
+  RunLayer best = *layer.mask;
+  // Where layers couple, masks beside may have changed since this one was held.
+  FoundFaults found = judge.broken();
+  if (found.weight == 0) return layer;
   MaskSearch search(search_, layers);
   // What is mended may cost wrong voxels, but no more than so many for each that is at fault.
   constexpr std::int64_t kFaultWeight = 5;
   std::int64_t least = kFaultWeight * found.weight + judge.wrong_voxels(best);
-  constexpr int kMostRounds = 10;
+  constexpr int kMostRounds = 24;  // with 10 some hard parts keep a fault
   for (int round = 0; round < kMostRounds && found.weight > 0; ++round) {
     search.run_again(found.faults);
     const RunLayer next = search.mask();
@@ -108,7 +140,11 @@ InverseLayer InverseSolver::repair(const LayerWindow& layers) const {
     least = cost;
     best = std::move(held);
   }
-  return with_mask(layers.middle(), std::move(best));
+  if (best == *layer.mask) return layer;
+  layer = with_mask(layers.middle(), std::move(best));
+  layer.printed =
+      std::make_shared<const RunLayer>(print_with(layers, 0, search_.printer, *layer.mask));
+  return layer;
 }
 
 PixelReasons InverseSolver::reasons(const LayerWindow& layers, int x, int y) const {

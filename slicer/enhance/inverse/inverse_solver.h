@@ -37,8 +37,10 @@ class InverseSolver {
   // only the first counts.
   InverseSolver(std::vector<PrinterModel> window, const Grid& grid, const MaskRules& rules);
 
-  // How many layers on each side of a layer improve() and repair() look at.
-  int reach() const;
+  // How many layers on each side of a layer these look at; find_broken() looks at one.
+  int improve_reach() const;
+  int print_reach() const;
+  int repair_reach() const;
   // The layers k and k + stride() print into no common layer. So every stride()-th layer can be
   // improved at once: none of them changes a print that another one judged by.
   int stride() const;
@@ -53,9 +55,16 @@ class InverseSolver {
   InverseLayer plain(int number, Shared<VoxelLayer> target) const;
   // The middle layer with a better mask, or the same.
   InverseLayer improve(const LayerWindow& layers) const;
-  // The middle layer, searched again around features that are lost or fused
-  // (slicer/score/lost_and_fused.h), with the prints of the layers beside as they are.
+  // The middle layer with what the masks so far print there, and with what is broken in the print;
+  // for the latter all layers must have been printed.
+  InverseLayer print(const LayerWindow& layers) const;
+  InverseLayer find_broken(const LayerWindow& layers) const;
+  // The middle layer, searched again around what is lost, fused, spurious or loose in this layer
+  // and the ones beside, with their masks as they are; all must have been judged. What is broken
+  // never grows, as long as no two layers are repaired at once that are less than repair_stride()
+  // apart.
   InverseLayer repair(const LayerWindow& layers) const;
+  int repair_stride() const { return stride() + 2; }
   // Of pixel (x, y) of the middle layer, its mask so far.
   PixelReasons reasons(const LayerWindow& layers, int x, int y) const;
 

@@ -5,16 +5,16 @@
 #include <array>
 #include <cmath>
 #include <cstdlib>
-#include <optional>
 #include <span>
 
-#include "slicer/enhance/inverse/loose_in_window.h"
 #include "slicer/enhance/inverse/mask_patch.h"
 #include "slicer/enhance/inverse/search/layer_sets.h"
 #include "slicer/enhance/inverse/spurious.h"
 #include "slicer/layers/rows.h"
 #include "slicer/score/faults.h"
 #include "slicer/score/lost_and_fused.h"
+#include "slicer/score/pieces.h"
+#include "slicer/voxels/any_slice.h"
 
 namespace binderjet {
 namespace {
@@ -91,11 +91,104 @@ double deepest_mm(const RunLayer& voxels, const VoxelLayer& target, const Grid& 
   return deepest;
 }
 
-// What a piece that comes off and what a feature that is lost or fused weigh, in voxels.
+// What a piece that comes off and what a feature that is lost, fused or spurious weigh, in voxels.
 constexpr std::int64_t kPieceWeight = 200;
 constexpr std::int64_t kFeatureWeight = 100;
 
+// A bridge to a loose piece may begin this far from the piece along x and y, in voxels.
+constexpr int kBridgeVx = 4;
+
+// Prints by their offset from the middle layer.
+using Prints = std::map<int, Shared<RunLayer>>;
+
+// A layer with the one below and the one above; null beyond the job's ends.
+class Neighbors {
+ public:
+  Neighbors(const LayerWindow& layers, const Prints& prints, int offset) {
+    for (std::size_t i = 0; i < layers_.size(); ++i) {
+      const int at = offset + static_cast<int>(i) - 1;
+      if (layers.at(at) != nullptr) layers_[i] = {layers.at(at)->target, prints.at(at)};
+    }
+  }
+  const ComparedLayer& middle() const { return layers_[1]; }
+  const ComparedLayer* below() const { return there(0); }
+  const ComparedLayer* above() const { return there(2); }
+
+ private:
+  const ComparedLayer* there(std::size_t i) const {
+    return layers_[i].target == nullptr ? nullptr : &layers_[i];
+  }
+
+  std::array<ComparedLayer, 3> layers_;
+};
+
+// The pieces that come off as three layers show them (what holds together only beyond these looks
+// loose here), and what a bridge in the middle layer could be made of: target voxels around the
+// pieces that are not printed.
+struct Loose {
+  std::int64_t count = 0;
+  RunLayer gap;
+};
+Loose find_loose(const Neighbors& of) {
+  const auto& [target, printed] = of.middle();
+  PieceFinder pieces(static_cast<int>(target->slices.size()), 0, Contacts::kIgnore);
+  for (const ComparedLayer* layer : {of.below(), &of.middle(), of.above()}) {
+    if (layer != nullptr) pieces.add(*layer->target, *layer->printed);
+  }
+  std::vector<Rect> around;
+  for (const Region& piece : pieces.loose()) {
+    around.push_back(
+        Rect{piece.low[0], piece.low[1], piece.high[0], piece.high[1]}.grown(kBridgeVx, kBridgeVx));
+  }
+  return {std::ssize(around), around.empty()
+                                  ? RunLayer::powder(printed->width(), printed->height())
+                                  : within(without(any_slice(*target), *printed), around)};
+}
+
+// What is lost, fused, spurious or comes off in a layer.
+FoundFaults find_broken(const Neighbors& of, const Grid& grid) {
+  const auto& [target, printed] = of.middle();
+  const LostAndFused found = find_lost_and_fused(of.below(), of.middle(), of.above(), grid);
+  Loose loose = find_loose(of);
+  FaultFinder finder(grid.detail_vx[2],
+                     {.kinds = {FaultKind::kLost, FaultKind::kFused, FaultKind::kSpurious}});
+  const std::size_t ended = finder.add(*target, *printed, found).size();
+  const std::size_t features = ended + finder.finish().size();
+
+  SearchFaults faults{0, std::move(loose.gap), spurious_print(*target, *printed)};
+  for (const RunLayer& slice : found.lost) faults.missing = either(faults.missing, slice);
+  for (const RunLayer& slice : found.fused) faults.surplus = either(faults.surplus, slice);
+  const std::int64_t weight = kPieceWeight * loose.count +
+                              kFeatureWeight * static_cast<std::int64_t>(features) +
+                              faults.missing.count() + faults.surplus.count();
+  return {{std::move(faults)}, weight};
+}
+
+Prints prints_so_far(const LayerWindow& layers, int first, int last) {
+  Prints prints;
+  for (int at = first; at <= last; ++at) {
+    if (layers.at(at) != nullptr) prints[at] = layers.at(at)->printed;
+  }
+  return prints;
+}
+
 }  // namespace
+
+FoundFaults find_broken(const LayerWindow& layers, const Grid& grid) {
+  return find_broken(Neighbors(layers, prints_so_far(layers, -1, 1), 0), grid);
+}
+
+bool is_known(const LayerWindow& layers, int offset) {
+  return layers.at(offset)->judged == prints_around(layers, offset, 1);
+}
+
+std::vector<Shared<RunLayer>> prints_around(const LayerWindow& layers, int offset, int around) {
+  std::vector<Shared<RunLayer>> out;
+  for (int at = offset - around; at <= offset + around; ++at) {
+    out.push_back(layers.at(at) == nullptr ? nullptr : layers.at(at)->printed);
+  }
+  return out;
+}
 
 Judge::Judge(const SearchModel& by, const LayerWindow& layers) : by_(by), layers_(layers) {
   for (const int offset : by.offsets.printed) {
@@ -114,58 +207,69 @@ Judge::Judge(const SearchModel& by, const LayerWindow& layers) : by_(by), layers
   }
 }
 
-template <class Find>
-FoundFaults Judge::faults(Find find) const {
+FoundFaults Judge::too_deep(const RunLayer& own) const {
   FoundFaults out;
   for (const auto& [offset, layer] : printed_) {
-    SearchFaults of = find(offset, layer);
-    of.offset = offset;
+    const RunLayer printed = print_with(layers_, offset, by_.printer, own);
+    const VoxelLayer& target = *layers_.at(offset)->target;
+    SearchFaults of{
+        offset,
+        deeper(without(common(layer.solid, layer.plain), printed), target, by_.grid, layer.deep_mm),
+        deeper(without(without(printed, layer.plain), layer.any), target, by_.grid, layer.deep_mm)};
     out.weight += of.missing.count() + of.surplus.count();
     out.faults.push_back(std::move(of));
   }
   return out;
 }
 
-FoundFaults Judge::too_deep(const RunLayer& own) const {
-  return faults([&](int offset, const Layer& layer) {
-    const RunLayer printed = print_with(layers_, offset, by_.printer, own);
-    const VoxelLayer& target = *layers_.at(offset)->target;
-    return SearchFaults{
-        0,
-        deeper(without(common(layer.solid, layer.plain), printed), target, by_.grid, layer.deep_mm),
-        deeper(without(without(printed, layer.plain), layer.any), target, by_.grid, layer.deep_mm)};
-  });
+FoundFaults Judge::broken(const RunLayer& own) const {
+  const int first = *by_.offsets.printed.begin() - 1;
+  const int last = *by_.offsets.printed.rbegin() + 1;
+  Prints prints = prints_so_far(layers_, first - 1, last + 1);
+  for (const auto& [offset, layer] : printed_) {
+    prints[offset] =
+        std::make_shared<const RunLayer>(print_with(layers_, offset, by_.printer, own));
+  }
+  std::map<int, FoundFaults> found;
+  for (int at = first; at <= last; ++at) {
+    if (layers_.at(at) == nullptr) continue;
+    found.emplace(at, find_broken(Neighbors(layers_, prints, at), by_.grid));
+  }
+  return with_faults_beside(prints, found, too_deep(own));
 }
 
-FoundFaults Judge::broken(const RunLayer& own) const {
-  std::int64_t pieces = 0;
-  std::size_t features = 0;
-  FoundFaults out = faults([&](int offset, const Layer&) {
-    std::array<std::optional<ComparedLayer>, 3> seen;
-    for (const int beside : {-1, 0, 1}) {
-      const int at = offset + beside;
-      if (layers_.at(at) == nullptr) continue;
-      seen[static_cast<std::size_t>(beside + 1)] = ComparedLayer{
-          layers_.shared(at)->target,
-          std::make_shared<const RunLayer>(print_with(layers_, at, by_.printer, own))};
+FoundFaults Judge::broken() const {
+  const int first = *by_.offsets.printed.begin() - 1;
+  const int last = *by_.offsets.printed.rbegin() + 1;
+  const Prints prints = prints_so_far(layers_, first - 1, last + 1);
+  std::map<int, FoundFaults> found;
+  for (int at = first; at <= last; ++at) {
+    if (layers_.at(at) == nullptr) continue;
+    found.emplace(at, is_known(layers_, at)
+                          ? *layers_.at(at)->broken
+                          : find_broken(Neighbors(layers_, prints, at), by_.grid));
+  }
+  return with_faults_beside(prints, found, too_deep(*layers_.middle().mask));
+}
+
+// A spike's tip that is lost needs what is below it, so what is missing beside is missing here,
+// where it is target and not printed.
+FoundFaults Judge::with_faults_beside(const Prints& prints, const std::map<int, FoundFaults>& found,
+                                      FoundFaults deep) const {
+  FoundFaults out = std::move(deep);
+  for (const auto& [at, of] : found) {
+    out.weight += of.weight;
+    if (!printed_.contains(at)) continue;
+    SearchFaults faults = of.faults.front();
+    faults.offset = at;
+    for (const int beside : {at - 1, at + 1}) {
+      if (!found.contains(beside) || found.at(beside).weight == 0) continue;
+      const RunLayer& missing = found.at(beside).faults.front().missing;
+      const RunLayer unprinted = without(any_slice(*layers_.at(at)->target), *prints.at(at));
+      faults.missing = either(faults.missing, common(missing, unprinted));
     }
-    std::array<const ComparedLayer*, 3> window{};
-    for (std::size_t i = 0; i < 3; ++i) window[i] = seen[i] ? &*seen[i] : nullptr;
-    const LostAndFused found = find_lost_and_fused(window[0], *window[1], window[2], by_.grid);
-    const LooseInWindow loose = find_loose_in_window(window);
-    pieces += loose.count;
-    FaultFinder finder(by_.grid.detail_vx[2], {.kinds = {FaultKind::kLost, FaultKind::kFused}});
-    features += finder.add(*window[1]->target, *window[1]->printed, found).size();
-    features += finder.finish().size();
-    SearchFaults of{0, loose.gap, spurious_print(*window[1]->target, *window[1]->printed)};
-    for (const RunLayer& slice : found.lost) of.missing = either(of.missing, slice);
-    for (const RunLayer& slice : found.fused) of.surplus = either(of.surplus, slice);
-    return of;
-  });
-  out.weight += kPieceWeight * pieces + kFeatureWeight * static_cast<std::int64_t>(features);
-  FoundFaults deep = too_deep(own);
-  out.weight += deep.weight;
-  for (SearchFaults& of : deep.faults) out.faults.push_back(std::move(of));
+    out.faults.push_back(std::move(faults));
+  }
   return out;
 }
 

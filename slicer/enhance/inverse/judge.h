@@ -19,11 +19,18 @@ constexpr double kDeepMm = 0.125;
 constexpr double kShallowMm = 0.1;
 
 // Faults by layer, and what they weigh: their voxels, and more for each feature and each piece.
-// Both are empty or neither.
 struct FoundFaults {
   std::vector<SearchFaults> faults;
   std::int64_t weight = 0;
 };
+
+// What is lost, fused (slicer/score/lost_and_fused.h), spurious
+// (slicer/enhance/inverse/spurious.h) or loose in the middle layer, as all masks so far print.
+FoundFaults find_broken(const LayerWindow& layers, const Grid& grid);
+// Whether what has been found in the layer at `offset` still holds: prints are the same.
+bool is_known(const LayerWindow& layers, int offset);
+// The prints of a layer and so many on each side, from below; null beyond the job's ends.
+std::vector<Shared<RunLayer>> prints_around(const LayerWindow& layers, int offset, int around);
 
 class Judge {
  public:
@@ -32,10 +39,11 @@ class Judge {
 
   // With `own` as the middle layer's mask: voxels that are too deep to be wrong ...
   FoundFaults too_deep(const RunLayer& own) const;
-  // ... and besides what is lost, fused (slicer/score/lost_and_fused.h), spurious
-  // (slicer/enhance/inverse/spurious.h) or comes off (slicer/enhance/inverse/loose_in_window.h),
-  // seen with the layers beside as they are.
+  // ... and besides what is lost, fused, spurious or loose, in the layers beside, too: what is lost
+  // there may hang on the print here. Faults are where the middle layer's mask can mend them.
   FoundFaults broken(const RunLayer& own) const;
+  // The same of the mask so far.
+  FoundFaults broken() const;
   // The wrong voxels of all layers that it prints into.
   std::int64_t wrong_voxels(const RunLayer& own) const;
   // No layer that it prints into has more wrong voxels than with plain masks.
@@ -52,8 +60,8 @@ class Judge {
     RunLayer plain;  // printed from plain masks
     double deep_mm;
   };
-  template <class Find>
-  FoundFaults faults(Find find) const;
+  FoundFaults with_faults_beside(const std::map<int, Shared<RunLayer>>& prints,
+                                 const std::map<int, FoundFaults>& found, FoundFaults deep) const;
 
   const SearchModel& by_;
   const LayerWindow& layers_;

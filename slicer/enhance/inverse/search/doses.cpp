@@ -68,7 +68,7 @@ int change_on_ramp(const Overlay& o, std::int16_t span) {
   });
 }
 
-// Of one level, or of two that count as much.
+// Of one level, or of two by their weights.
 BINDERJET_VECTOR_CLONES
 int change_of_count(const Overlay& o, std::int16_t least) {
   return sum_over(o, [least](std::int16_t now, std::int16_t then) {
@@ -76,11 +76,24 @@ int change_of_count(const Overlay& o, std::int16_t least) {
   });
 }
 BINDERJET_VECTOR_CLONES
-int change_of_counts(const Overlay& o, std::int16_t one, std::int16_t other) {
-  return sum_over(o, [one, other](std::int16_t now, std::int16_t then) {
-    return static_cast<std::int16_t>((then >= one ? 1 : 0) + (then >= other ? 1 : 0) -
-                                     (now >= one ? 1 : 0) - (now >= other ? 1 : 0));
+int change_of_counts(const Overlay& o, std::array<std::int16_t, 2> least,
+                     std::array<std::int16_t, 2> weight) {
+  return sum_over(o, [=](std::int16_t now, std::int16_t then) {
+    const int one = (then >= least[0] ? 1 : 0) - (now >= least[0] ? 1 : 0);
+    const int other = (then >= least[1] ? 1 : 0) - (now >= least[1] ? 1 : 0);
+    return static_cast<std::int16_t>(one * weight[0] + other * weight[1]);
   });
+}
+
+// Adds a row of a half-line that begins at voxel `begin`, as often as `sign` says, to the voxels
+// [x0, x1) of `to`.
+void add_half_line(const std::int16_t* line, int width, int begin, int x1, int sign, int x0,
+                   std::int16_t* to) {
+  const int constant = std::min(x1, begin + width);
+  int x = std::max(x0, begin);
+  for (; x < constant; ++x) to[x] = static_cast<std::int16_t>(to[x] + sign * line[x - begin]);
+  const int add = sign * line[width - 1];
+  for (; x < x1; ++x) to[x] = static_cast<std::int16_t>(to[x] + add);
 }
 
 // The credit of dose that stands for a voxel's gain; where the gain is 0 a debt that no dose makes
@@ -278,12 +291,9 @@ void Doses::add_mask(const RunLayer& mask, Stamps& stamps, const ShiftedMask* sh
         auto run = std::partition_point(runs.begin(), runs.end(),
                                         [&](const BandRun& r) { return r.x1 <= begin; });
         for (; run != runs.end() && run->x0 < end; ++run) {
-          std::int16_t* to = dose + run->first;
-          for (int x = std::max(begin, run->x0); x < std::min(end, run->x1); ++x) {
-            int add = up[std::min(x - begin, begins.width - 1)];
-            if (x >= fall) add -= down[std::min(x - fall, ends.width - 1)];
-            to[x - run->x0] = static_cast<std::int16_t>(to[x - run->x0] + add);
-          }
+          std::int16_t* to = dose + run->first - run->x0;
+          add_half_line(up, begins.width, begin, std::min(end, run->x1), 1, run->x0, to);
+          add_half_line(down, ends.width, fall, std::min(end, run->x1), -1, run->x0, to);
         }
       }
     }
@@ -363,32 +373,46 @@ int Doses::ramp_change(const OpenPixel& pixel, int sign, const Ramp& ramp) const
   return sum;
 }
 
-int Doses::count_change(const OpenPixel& pixel, int sign) const {
+int Doses::nominal_change(const OpenPixel& pixel, int sign) const {
   int sum = 0;
   for (const Plane& plane : planes_) {
-    if (plane.model >= filled_) continue;
-    on_stamp(pixel, plane, [&](const Stamp& s, const std::size_t* rows, std::ptrdiff_t column) {
-      const Overlay o{s.dose.data(),
-                      cells_.data() + plane.dose,
-                      cells_.data() + plane.price,
-                      rows,
-                      column,
-                      s.width,
-                      s.height,
-                      static_cast<std::int16_t>(sign < 0 ? -1 : 0)};
-      const std::vector<DoseLevel>& levels = by_.models[plane.model].levels;
-      const auto least = [&](std::size_t at) {
-        return static_cast<std::int16_t>(levels[at].least);
-      };
-      if (levels.size() == 2 && levels[0].weight == levels[1].weight) {
-        sum += levels[0].weight * change_of_counts(o, least(0), least(1));
-        return;
-      }
-      for (std::size_t at = 0; at < levels.size(); ++at) {
-        sum += levels[at].weight * change_of_count(o, least(at));
-      }
-    });
+    if (plane.model == 0) sum += count_change(pixel, sign, plane);
   }
+  return sum;
+}
+
+int Doses::drifted_change(const OpenPixel& pixel, int sign) const {
+  int sum = 0;
+  for (const Plane& plane : planes_) {
+    if (plane.model > 0 && plane.model < filled_) sum += count_change(pixel, sign, plane);
+  }
+  return sum;
+}
+
+int Doses::count_change(const OpenPixel& pixel, int sign, const Plane& plane) const {
+  int sum = 0;
+  on_stamp(pixel, plane, [&](const Stamp& s, const std::size_t* rows, std::ptrdiff_t column) {
+    const Overlay o{s.dose.data(),
+                    cells_.data() + plane.dose,
+                    cells_.data() + plane.price,
+                    rows,
+                    column,
+                    s.width,
+                    s.height,
+                    static_cast<std::int16_t>(sign < 0 ? -1 : 0)};
+    const std::vector<DoseLevel>& levels = by_.models[plane.model].levels;
+    const auto least = [&](std::size_t at) { return static_cast<std::int16_t>(levels[at].least); };
+    const auto weight = [&](std::size_t at) {
+      return static_cast<std::int16_t>(levels[at].weight);
+    };
+    if (levels.size() == 2) {
+      sum = change_of_counts(o, {least(0), least(1)}, {weight(0), weight(1)});
+      return;
+    }
+    for (std::size_t at = 0; at < levels.size(); ++at) {
+      sum += weight(at) * change_of_count(o, least(at));
+    }
+  });
   return sum;
 }
 

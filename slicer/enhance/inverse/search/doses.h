@@ -75,7 +75,12 @@ class Doses {
   // What all costs grow by when the pixel is set (sign 1) or cleared (sign -1): within a ramp, in
   // units of dose times kPriceUnit; of counts under all models that are filled, in kPriceUnit.
   int ramp_change(const OpenPixel& pixel, int sign, const Ramp& ramp) const;
-  int count_change(const OpenPixel& pixel, int sign) const;
+  int count_change(const OpenPixel& pixel, int sign) const {
+    return nominal_change(pixel, sign) + drifted_change(pixel, sign);
+  }
+  // The same of the printer alone, and of the drifted models.
+  int nominal_change(const OpenPixel& pixel, int sign) const;
+  int drifted_change(const OpenPixel& pixel, int sign) const;
   void flip(const OpenPixel& pixel, int sign);
 
   // What a wrong voxel weighs in counts, of all models that are filled.
@@ -109,6 +114,7 @@ class Doses {
   void add_credit(int printed, int least, std::int16_t* dose) const;
   void shift(const Ramp& ramp, int sign);
   // Calls act(stamp, where the stamp's rows begin in the band, first column) for a pixel.
+  int count_change(const OpenPixel& pixel, int sign, const Plane& plane) const;
   template <class Act>
   void on_stamp(const OpenPixel& pixel, const Plane& plane, Act act) const;
 

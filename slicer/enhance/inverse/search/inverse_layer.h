@@ -4,6 +4,7 @@
 
 #include <cstdint>
 #include <set>
+#include <vector>
 
 #include "slicer/layers/run_layer.h"
 #include "slicer/layers/window.h"
@@ -12,12 +13,22 @@
 
 namespace binderjet {
 
+struct FoundFaults;
+
 // A step changes one member, so the members are shared and a copy is cheap.
 struct InverseLayer {
   Shared<VoxelLayer> target;
   Shared<RunLayer> plain;  // its mask without enhancement
   Shared<RunLayer> mask;   // its mask so far; obeys the rules
   int number = 0;          // in the job, from 0 on the bed
+  // What the masks so far print here, and what is broken in it (slicer/enhance/inverse/judge.h);
+  // null until somebody asks.
+  Shared<RunLayer> printed{};
+  Shared<FoundFaults> broken{};
+  // The prints that `broken` was found in, and those with which repair found nothing better: as
+  // long as they are the same nobody needs to look again. From the layers below up.
+  std::vector<Shared<RunLayer>> judged{};
+  std::vector<Shared<RunLayer>> settled{};
 };
 
 // As many layers on each side of the one that is worked on.

@@ -37,7 +37,55 @@ int least_dose(const AssembledModel& form, const Grid& grid, int unit) {
   return static_cast<int>(std::lround(form.level * unit)) - rows;
 }
 
+// Where the dose beside a straight edge of a half-plane reaches the level, in mm from the edge.
+double edge_mm(const AssembledModel& form, const Grid& grid, int axis) {
+  int first = 0;
+  int last = 0;
+  for (const DoseTerm& term : form.terms) {
+    const Kernel& kernel = axis == 0 ? term.x : term.y;
+    first = std::min(first, kernel.first);
+    last = std::max(last, kernel.last());
+  }
+  double before = 0;
+  double dose = 0;
+  int at = first - 1;
+  while (at <= last && dose < form.level) {
+    ++at;
+    before = dose;
+    for (const DoseTerm& term : form.terms) {
+      const Kernel& kernel = axis == 0 ? term.x : term.y;
+      dose += term.gain * static_cast<double>(kernel.at(at)) / static_cast<double>(kernel.total());
+    }
+  }
+  const double part = dose > before ? (form.level - before) / (dose - before) : 0;
+  return (at + part) * grid.voxel_mm(axis);
+}
+
+// How far a corner of the process window moves straight edges.
+double edge_move_mm(const AssembledModel& corner, const AssembledModel& printer, const Grid& grid) {
+  double sum = 0;
+  for (const int axis : {0, 1}) {
+    sum += std::abs(edge_mm(corner, grid, axis) - edge_mm(printer, grid, axis));
+  }
+  return sum;
+}
+
 }  // namespace
+
+std::vector<int> window_weights(std::span<const PrinterModel> window, const Grid& grid) {
+  std::vector<double> moves_mm;
+  double sum_mm = 0;
+  for (const PrinterModel& corner : window.subspan(1)) {
+    moves_mm.push_back(edge_move_mm(corner.form(), window.front().form(), grid));
+    sum_mm += moves_mm.back();
+  }
+  std::vector<int> weights{kNominalWeight};
+  for (const double move_mm : moves_mm) {
+    const bool far = move_mm > sum_mm / static_cast<double>(moves_mm.size()) + 1e-9;
+    weights.push_back(far ? kFarCornerWeight : 1);
+  }
+  return weights;
+}
 
 SearchModel::SearchModel(std::span<const PrinterModel> window, const MaskRules& its_rules,
                          const Grid& its_grid)
@@ -46,6 +94,7 @@ SearchModel::SearchModel(std::span<const PrinterModel> window, const MaskRules& 
       offsets(offsets_of(printer.form())),
       rules(its_rules),
       grid(its_grid) {
+  const std::vector<int> weights = window_weights(window, grid);
   std::vector<const AssembledModel*> forms;
   for (const PrinterModel& model : window) {
     const AssembledModel& form = model.form();
@@ -57,8 +106,8 @@ SearchModel::SearchModel(std::span<const PrinterModel> window, const MaskRules& 
       forms.push_back(&form);
       models.push_back({form.terms, {}});
     }
-    models[at].levels.push_back(
-        {least_dose(form, grid, unit), &model == &window.front() ? kNominalWeight : 1});
+    const auto which = static_cast<std::size_t>(&model - window.data());
+    models[at].levels.push_back({least_dose(form, grid, unit), weights[which]});
   }
 }
 

@@ -12,10 +12,16 @@
 
 namespace binderjet {
 
-// How many wrong voxels under a corner of the process window one of the printer as it is outweighs.
-// The corners then settle what is all the same to the printer: with 2 the worst case of the window
-// falls by a twentieth, and the excess doubles.
-constexpr int kNominalWeight = 20;
+// What a wrong voxel of the printer as it is weighs, of a corner of the process window that moves a
+// straight edge farther than the mean of all corners, and of any other. It is the worst corner that
+// counts, and that is one of the former: with 1 for all, the worst case of smooth parts is up to a
+// tenth worse; with 20 for the printer the excess falls by a tenth, and the worst case grows by as
+// much.
+constexpr int kNominalWeight = 8;
+constexpr int kFarCornerWeight = 2;
+
+// Of each model of the window, the printer first.
+std::vector<int> window_weights(std::span<const PrinterModel> window, const Grid& grid);
 
 // A level at which the dose binds powder, and how much a wrong voxel counts there.
 struct DoseLevel {

@@ -4,7 +4,9 @@
 
 #include <gtest/gtest.h>
 
+#include <memory>
 #include <utility>
+#include <vector>
 
 #include "slicer/enhance/inverse/search/layer_sets.h"
 #include "tests/support/inverse_scene.h"
@@ -125,6 +127,74 @@ TEST(Judge, MissesAPinThatIsLost) {
   EXPECT_GT(found.weight, 0);
   for (const SearchFaults& of : found.faults) EXPECT_TRUE(of.surplus.empty());
   EXPECT_FALSE(judge.no_worse_than_plain(empty));
+}
+
+// A spike whose upper end is lost: the layer below is asked for what would carry the end.
+TEST(Judge, AsksTheLayerBelowForWhatCarriesATip) {
+  const PrinterModel model = judge_model(0.16, 0.5);
+  Volume target(60, 60, 6);
+  target.fill([](int x, int y, int z) {
+    return z < 2 ? x >= 10 && y >= 10 && x < 50 && y < 50
+                 : x >= 26 && y >= 26 && x < 32 && y < (z < 4 ? 34 : 32);
+  });
+  Volume masks = whole::masks(target, kJudgeGrid);
+  masks.fill([all = masks](int x, int y, int k) { return k == 0 && all.at(x, y, k) == 1; });
+  const whole::InverseScene scene({&model, 1}, kJudgeGrid, {}, target, masks);
+  ASSERT_GT(find_broken(scene.around(2), kJudgeGrid).weight, 0) << "the tip is lost";
+  const LayerWindow below = scene.around(1);
+  const FoundFaults found = Judge(scene.model, below).broken();
+  EXPECT_GE(found.weight, find_broken(scene.around(2), kJudgeGrid).weight);
+  RunLayer missing = RunLayer::powder(60, 60);
+  for (const SearchFaults& of : found.faults) missing = either(missing, of.missing);
+  EXPECT_TRUE(missing.at(28, 28));
+  EXPECT_FALSE(missing.at(12, 12)) << "no target in this layer";
+}
+
+TEST(Judge, WeighsWhatComesOffAndWhatIsSpurious) {
+  const PrinterModel model = judge_model(0.08, 0.5);
+  // Two blocks with a neck between them, which the mask leaves out; and a blot far from both.
+  Volume target(80, 40, 2);
+  target.fill([](int x, int y, int) {
+    return (y >= 10 && y < 30 && ((x >= 6 && x < 26) || (x >= 30 && x < 50))) ||
+           (x >= 26 && x < 30 && y >= 18 && y < 22);
+  });
+  const Volume plain = whole::masks(target, kJudgeGrid);
+  const auto broken = [&](const auto& mask) {
+    Volume masks = plain;
+    masks.fill([&](int x, int y, int) { return mask(x, y); });
+    const whole::InverseScene scene({&model, 1}, kJudgeGrid, {}, target, masks);
+    return find_broken(scene.around(0), kJudgeGrid);
+  };
+  EXPECT_EQ(broken([&](int x, int y) { return plain.at(x, y, 0) == 1; }).weight, 0);
+  const FoundFaults loose =
+      broken([&](int x, int y) { return plain.at(x, y, 0) == 1 && (x < 13 || x >= 15); });
+  EXPECT_GE(loose.weight, 200);
+  EXPECT_TRUE(loose.faults.front().missing.at(28, 20)) << "the neck";
+  const FoundFaults blot = broken([&](int x, int y) {
+    return plain.at(x, y, 0) == 1 || (x >= 33 && x < 37 && y >= 8 && y < 12);
+  });
+  EXPECT_GE(blot.weight, 100);
+  EXPECT_TRUE(blot.faults.front().surplus.at(70, 20));
+}
+
+// What has been found holds as long as the prints are the same ones.
+TEST(Judge, KnowsWhatItHasFoundUntilAPrintChanges) {
+  const PrinterModel model = judge_model(0.16, 0.5);
+  Volume target(20, 20, 6);
+  target.fill([](int x, int y, int) { return x >= 6 && y >= 6 && x < 14 && y < 14; });
+  const whole::InverseScene scene({&model, 1}, kJudgeGrid, {}, target);
+  std::vector<Shared<InverseLayer>> layers;
+  for (int k = 0; k < 3; ++k) {
+    InverseLayer layer = scene.around(k).middle();
+    layer.judged = prints_around(scene.around(k), 0, 1);
+    layers.push_back(std::make_shared<const InverseLayer>(std::move(layer)));
+  }
+  const auto window = [&] { return LayerWindow(layers, LayerReach::both_sides(1)); };
+  EXPECT_TRUE(is_known(window(), 0));
+  InverseLayer other = *layers[2];
+  other.printed = std::make_shared<const RunLayer>(*other.printed);
+  layers[2] = std::make_shared<const InverseLayer>(other);
+  EXPECT_FALSE(is_known(window(), 0));
 }
 
 }  // namespace

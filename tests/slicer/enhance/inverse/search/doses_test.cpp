@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <numeric>
 
 #include "slicer/enhance/inverse/search/prices.h"
 #include "slicer/model/process_window.h"
@@ -214,8 +215,10 @@ Bounds counted_change(const DoseScene& scene, const Volume& before, const Volume
     const int k = scene.middle() + offset;
     const Band band(scene.open, kAround, {scene.grid.detail_vx[0], scene.grid.detail_vx[1]});
     const auto prices = voxel_prices(*scene.around().at(offset)->target, band);
-    for (const PrinterModel& model : scene.window) {
-      const int weight = &model == &scene.window.front() ? kNominalWeight : 1;
+    const std::vector<int> weights = window_weights(scene.window, scene.grid);
+    for (std::size_t m = 0; m < scene.window.size(); ++m) {
+      const PrinterModel& model = scene.window[m];
+      const int weight = weights[m];
       const double rounding = 2 * most_rounding(by, model);
       for (int y = 0; y < scene.target.ny; ++y) {
         for (int x = 0; x < scene.target.nx; ++x) {
@@ -258,7 +261,8 @@ TEST(Doses, KnowWhatAFlipChangesBeforeItIsMade) {
     Doses doses(scene.scene.model, around, scene.open);
     doses.fill_nominal(scene.mask());
     doses.fill_drifted(scene.mask());
-    EXPECT_EQ(doses.weights(), kNominalWeight + 3);
+    const std::vector<int> weights = window_weights(scene.window, grid);
+    EXPECT_EQ(doses.weights(), std::accumulate(weights.begin(), weights.end(), 0));
     // Beyond the layer nothing is counted here.
     const auto [x, y] = doses.pixel_reach();
     if (std::max(x, y) > 15) continue;

@@ -99,6 +99,26 @@ TEST(MaskSearch, ComesNearTheBestOfAllMasks) {
   EXPECT_LE(2 * (found - best), plain - best);
 }
 
+// Slanted combs, which single flips alone leave with a fifth more errors.
+TEST(MaskSearch, MovesWhatNoSingleFlipMoves) {
+  std::int64_t found = 0;
+  std::int64_t plain = 0;
+  for (int which = 0; which < 6; ++which) {
+    Volume target(60, 60, 1);
+    target.fill([&](int x, int y, int) {
+      const int along = 3 * x + (which % 3) * y;
+      return x >= 10 && y >= 10 && x < 50 && y < 50 && along % (24 + 3 * which) < 12 + which;
+    });
+    const PrinterModel model(spread_and_level(0.5, 0.5), kSearchGrid);
+    const whole::InverseScene scene({&model, 1}, kSearchGrid, {4, 4}, target);
+    const Plane<int> prices = prices_of_layer(scene);
+    found += cost(model, prices, searched(scene));
+    plain += cost(model, prices, *scene.around(0).middle().mask);
+  }
+  std::cout << "cost of wrong voxels: plain " << plain << ", found " << found << '\n';
+  EXPECT_LE(found, plain / 5);
+}
+
 TEST(MaskSearch, LeavesStraightEdgesAlone) {
   const auto models = process_window(spread_and_level(0.3, 0.5), kSearchGrid);
   Volume block(60, 60, 1);

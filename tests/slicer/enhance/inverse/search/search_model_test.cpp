@@ -22,10 +22,28 @@ TEST(SearchModel, ComparesOneDoseWithEachLevelOfItsSpread) {
   for (const std::size_t drifted : {1U, 2U}) {
     const std::vector<DoseLevel>& levels = model.models[drifted].levels;
     ASSERT_EQ(levels.size(), 2U);
-    EXPECT_EQ(levels[0].weight, 1);
-    EXPECT_EQ(levels[1].weight, 1);
+    // A wider spread moves an edge farther than a narrower one.
+    const bool wider = drifted == 2;
+    EXPECT_EQ(levels[0].weight, wider ? kFarCornerWeight : 1);
+    EXPECT_EQ(levels[1].weight, wider ? kFarCornerWeight : 1);
     EXPECT_NE(levels[0].least < model.models[0].levels[0].least,
               levels[1].least < model.models[0].levels[0].least);
+  }
+}
+
+// At a low level an edge lies where the wide spread and the low level move it the same way.
+TEST(SearchModel, WeighsTheCornersThatMoveAnEdgeFarthest) {
+  EffectList low = kSpreadAndLevel;
+  low.back().numbers.at("level") = {0.25};
+  const auto window = process_window(low, kWindowGrid);
+  const SearchModel model(window, {}, kWindowGrid);
+  const int nominal = model.models[0].levels[0].least;
+  for (const std::size_t drifted : {1U, 2U}) {
+    for (const DoseLevel& level : model.models[drifted].levels) {
+      const bool wide = drifted == 2;
+      const bool outwards = level.least < nominal;
+      EXPECT_EQ(level.weight, wide == outwards ? kFarCornerWeight : 1) << drifted << level.least;
+    }
   }
 }
 
