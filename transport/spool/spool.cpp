@@ -106,12 +106,27 @@ Result<File> Spool::lock() const {
   }
   Result<File> file = open_counter(folder_, 0);
   if (!file) return file;
-  // Others hold it for as long as they change a job's place; EINTR is a person who waits no longer.
-  if (flock(file->fd(), LOCK_EX) != 0) {
-    return tl::unexpected(system_failure(errno, folder_, "cannot lock it"));
-  }
+  if (auto locked = wait_for(*file); !locked) return tl::unexpected(locked.error());
   recover();
   return file;
+}
+
+// Others hold the lock for as long as they change a job's place, which is soon over, unless they
+// were stopped. EINTR is a person who waits no longer.
+Result<void> Spool::wait_for(const File& counter) const {
+  constexpr int kTries = 500;
+  constexpr useconds_t kPause_us = 2000;
+  for (int i = 0; i < kTries; ++i) {
+    if (flock(counter.fd(), LOCK_EX | LOCK_NB) == 0) return {};
+    if (errno != EWOULDBLOCK || usleep(kPause_us) != 0) {
+      return tl::unexpected(system_failure(errno, folder_, "cannot lock it"));
+    }
+  }
+  if (say_wait_) say_wait_(folder_ + ": waits for another process that holds the spool's lock");
+  if (flock(counter.fd(), LOCK_EX) != 0) {
+    return tl::unexpected(system_failure(errno, folder_, "cannot lock it"));
+  }
+  return {};
 }
 
 std::vector<std::string> Spool::ids(const std::string& place) const {
