@@ -119,27 +119,6 @@ std::string row_name(const testing::TestParamInfo<Row>& row) {
 INSTANTIATE_TEST_SUITE_P(Printer, FaultTable, testing::ValuesIn(kTable), row_name);
 INSTANTIATE_TEST_SUITE_P(Printer, SocketFaultTable, testing::ValuesIn(kTable), row_name);
 
-// Nobody was told the number of a job whose start ended, so nobody could resume it.
-TEST_F(SocketPrinterTest, KeepsNothingOfAJobWhoseStartIsInterrupted) {
-  bool started = false;
-  for (int moment = 0; !started; ++moment) {
-    SCOPED_TRACE(moment);
-    BackendOptions options;
-    options.state_folder = folder_ / "state";
-    int asked = 0;
-    options.stop_asked = [&asked, moment] { return asked++ >= moment; };
-    const auto sender = *open_backend(uri(), options);
-    const auto id = sender->start(ticket());
-    started = id.has_value();
-    if (!started) {
-      EXPECT_EQ(id.error().kind, FailureKind::kInterrupted);
-    }
-    EXPECT_EQ(backend()->status()->size(), started ? 1U : 0U);
-  }
-  const auto next = backend()->start(ticket());
-  EXPECT_THAT(next.error().what, HasSubstr("holds the unfinished job 2")) << "the one that started";
-}
-
 // No printer that keeps PROTOCOL.md does this; it must at least not pass for a printed job.
 TEST_F(PrinterTest, NeverReportsDoneWhatAPrinterForgot) {
   printer_.set_plan({{F::kForgetsJob, 12}});

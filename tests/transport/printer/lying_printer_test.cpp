@@ -7,7 +7,9 @@
 #include <functional>
 #include <utility>
 
+#include "tests/transport/sample_job.h"
 #include "transport/printer/frame.h"
+#include "transport/printer/printer_backend.h"
 #include "transport/printer/printer_job.h"
 
 namespace binderjet {
@@ -100,6 +102,48 @@ TEST(LyingPrinter, HasNoMoreLayersThanWereUnderWayWhenAnEarlierSenderEnded) {
     } else {
       EXPECT_THAT(first.error().what, HasSubstr("layers it was not sent"));
       EXPECT_TRUE(kept.empty());
+    }
+  }
+}
+
+// Nobody was told the number of a job whose start fails, so nobody could resume it.
+TEST(AStartThatFails, LeavesNoJob) {
+  struct Case {
+    Type answer;  // to JOB; HELLO is no answer
+    bool stop;    // as soon as JOB was sent
+    const char* said;
+  };
+  for (const Case& one : {Case{Type::kRefused, false, "refuses the job: full"},
+                          {Type::kHello, false, "says nothing"},
+                          {Type::kHello, true, "interrupted"}}) {
+    SCOPED_TRACE(one.said);
+    const TempFolder folder;
+    bool asked_for_job = false;
+    std::vector<Type> heard;
+    PrinterAccess access;
+    access.uri = "printer";
+    access.patience = std::chrono::milliseconds(50);
+    access.journals = folder / "jobs";
+    access.stop_asked = [&] { return one.stop && asked_for_job; };
+    access.open = [&](const std::string&) -> Result<std::unique_ptr<PrinterLink>> {
+      return std::make_unique<ScriptedLink>([&](const Frame& frame) -> std::vector<std::byte> {
+        heard.push_back(frame.type);
+        asked_for_job = asked_for_job || frame.type == Type::kJob;
+        if (frame.type == Type::kHello) return welcome(frame);
+        if (frame.type == Type::kCancel) return encode_frame(Type::kCancelled, 1, frame.payload);
+        if (one.answer != Type::kRefused) return {};
+        return encode_frame(Type::kRefused, 1,
+                            encode(Refused{frame.sequence, Refusal::kOtherJob, 0, "full"}));
+      });
+    };
+    const auto backend = make_printer_backend(std::move(access));
+    const auto id = backend->start({"header", 40, "a", ""});
+    ASSERT_FALSE(id);
+    EXPECT_THAT(id.error().what, HasSubstr(one.said));
+    EXPECT_TRUE(backend->status()->empty());
+    EXPECT_TRUE(asked_for_job);
+    if (!one.stop) {
+      EXPECT_EQ(heard.back(), Type::kCancel) << "the printer is told, too";
     }
   }
 }
