@@ -163,8 +163,11 @@ Result<std::string> Spool::new_id(const File& lock) const {
                     "program: move them away and write the last right number here",
                     last)});
   }
-  if (pwrite(lock.fd(), next.data(), next.size(), 0) != static_cast<ssize_t>(next.size())) {
-    return tl::unexpected(system_failure(errno, folder_ + "/last-id", "cannot write"));
+  const ssize_t written = pwrite(lock.fd(), next.data(), next.size(), 0);
+  if (written != static_cast<ssize_t>(next.size())) {
+    // A disk that fills up in the middle takes a part, and says nothing.
+    return tl::unexpected(
+        system_failure(written < 0 ? errno : ENOSPC, folder_ + "/last-id", "cannot write"));
   }
   if (auto done = sync_file(lock, folder_ + "/last-id"); !done) {
     return tl::unexpected(done.error());
