@@ -47,7 +47,8 @@ void watch() {
   // Who claimed the end and does not come to it waits for somebody who no longer reads.
   static_cast<void>(end_of_program().try_lock_for(kMoment));
   remove_unfinished();
-  say_aside("binderjet: interrupted; nothing was left half-written");
+  say_aside(
+      "binderjet: interrupted; nothing was left half-written, and a slice goes on where it was");
   _exit(static_cast<int>(ErrorKind::kInterrupted));
 }
 

@@ -18,6 +18,7 @@
 #include "driver/base/files.h"
 #include "driver/base/transport_errors.h"
 #include "slicer/base/error.h"
+#include "slicer/base/whole_file.h"
 #include "transport/job/job_scan.h"
 
 namespace binderjet {
@@ -133,6 +134,9 @@ UnfinishedSlice::UnfinishedSlice(const std::string& out, const SlicePlan& plan, 
   Result<JobWriter> writer = JobWriter::create_kept(stem_ + kPart, out, header);
   if (!writer) fs::remove(path, error);
   writer_ = value_or_throw(std::move(writer));
+  // Before the first layer they are of no use to anybody.
+  note_unfinished(stem_ + kPart);
+  note_unfinished(path);
   value_or_throw(sync_folder(folder_of(out)));
 }
 
@@ -190,6 +194,8 @@ UnfinishedSlice::~UnfinishedSlice() {
   std::error_code error;
   fs::remove(stem_ + kPart, error);
   fs::remove(stem_ + kTotals, error);
+  forget_unfinished(stem_ + kPart);
+  forget_unfinished(stem_ + kTotals);
 }
 
 void UnfinishedSlice::append(const std::vector<Shared<EncodedLayer>>& next) {
@@ -199,6 +205,10 @@ void UnfinishedSlice::append(const std::vector<Shared<EncodedLayer>>& next) {
   for (const Shared<EncodedLayer>& each : next) {
     lines += line_of(layer++, *each);
     records.insert(records.end(), each->record.begin(), each->record.end());
+  }
+  if (totals_.layers == 0) {
+    forget_unfinished(stem_ + kPart);
+    forget_unfinished(stem_ + kTotals);
   }
   // A layer is whole once its records are, so its line is there before.
   value_or_throw(write_all(totals_file_, std::as_bytes(std::span(lines)), stem_ + kTotals));
@@ -221,7 +231,7 @@ void UnfinishedSlice::finish() {
 }
 
 std::string UnfinishedSlice::kept() const {
-  if (totals_.layers == 0) return "";
+  if (totals_.layers == 0 || !path_exists(stem_ + kPart)) return "";
   return fmt::format(
       "; layers {} to {} of {} are kept in {}{}: the same command goes on from there",
       layers_.first, rest().first - 1, job_layers_, stem_, kPart);

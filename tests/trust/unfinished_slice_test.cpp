@@ -4,6 +4,7 @@
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <unistd.h>
 
 #include <CLI/CLI.hpp>
 #include <filesystem>
@@ -13,6 +14,7 @@
 
 #include "driver/verbs/program.h"
 #include "slicer/base/error.h"
+#include "slicer/base/whole_file.h"
 #include "tests/support/models.h"
 #include "tests/support/program.h"
 
@@ -218,6 +220,22 @@ TEST_F(UnfinishedSliceTest, IsSliceByOneProcessOnly) {
 TEST_F(UnfinishedSliceTest, LeavesNothingWithoutALayer) {
   stop_after(0);
   EXPECT_THAT(left(), IsEmpty());
+}
+
+TEST_F(UnfinishedSliceTest, LeavesLayersButNothingWithoutOneWhenItMustEndAtOnce) {
+  const SlicePlan plan = plan_slices(options_, console_);
+  const LayerRange all{0, plan.header.layers()};
+  const auto first = encoded_layers(plan.header, plan.mesh, plan.color).layers(all)->next(1);
+  for (const bool with_a_layer : {false, true}) {
+    const auto end_at_once = [&] {
+      UnfinishedSlice slice(options_.out, plan, all, false, console_);
+      if (with_a_layer) slice.append(first);
+      remove_unfinished();
+      _exit(0);
+    };
+    EXPECT_EXIT(end_at_once(), testing::ExitedWithCode(0), "");
+    EXPECT_THAT(left(), SizeIs(with_a_layer ? 2 : 0));
+  }
 }
 
 TEST_F(UnfinishedSliceTest, LeavesFilesAloneThatOnlyHaveItsNames) {
