@@ -30,6 +30,7 @@ int fail(ErrorKind kind, const std::string& what) {
   if (interrupted() && kind != ErrorKind::kInterrupted) {
     return fail(ErrorKind::kInterrupted, "interrupted: " + what);
   }
+  claim_end();
   say_line("binderjet: " + what);
   return static_cast<int>(kind);
 }
@@ -53,6 +54,7 @@ int run(int argc, char** argv) {
   try {
     try {
       program->parse(argc, argv);
+      claim_end();
       return 0;
     } catch (const CLI::ParseError& error) {
       return say_parsed(*program, error);

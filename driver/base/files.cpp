@@ -56,14 +56,22 @@ GiveName write_unnamed(const TextFile& file) {
   return [written] { written->keep(); };
 }
 
+Fingerprint::Fingerprint() : state_(XXH3_createState(), XXH3_freeState) {
+  XXH3_64bits_reset(state_.get());
+}
+
+void Fingerprint::add(std::span<const std::byte> bytes) {
+  XXH3_64bits_update(state_.get(), bytes.data(), bytes.size());
+}
+
+std::string Fingerprint::text() const { return hex(XXH3_64bits_digest(state_.get())); }
+
 std::string file_hash(const std::string& path) {
-  const std::unique_ptr<XXH3_state_t, XXH_errorcode (*)(XXH3_state_t*)> state(XXH3_createState(),
-                                                                              XXH3_freeState);
-  XXH3_64bits_reset(state.get());
+  Fingerprint print;
   for_each_piece(path, [&](const char* bytes, std::size_t size) {
-    XXH3_64bits_update(state.get(), bytes, size);
+    print.add(std::as_bytes(std::span(bytes, size)));
   });
-  return hex(XXH3_64bits_digest(state.get()));
+  return print.text();
 }
 
 std::string text_hash(const std::string& text) {

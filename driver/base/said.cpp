@@ -2,6 +2,7 @@
 #include "driver/base/said.h"
 
 #include <fcntl.h>
+#include <poll.h>
 #include <unistd.h>
 
 #include <array>
@@ -27,6 +28,18 @@ void say_line(const std::string& text) noexcept {
     std::fflush(stderr);
     std::clearerr(stderr);
   } catch (...) {  // out of memory: then there is nothing to say it with
+  }
+}
+
+// Not by stdio, where the work may be waiting.
+void say_aside(const std::string& text) noexcept {
+  pollfd room{STDERR_FILENO, POLLOUT, 0};
+  if (::poll(&room, 1, 0) <= 0) return;
+  try {
+    const std::string place = ::isatty(STDERR_FILENO) != 0 ? "\r\033[K" : "";
+    const std::string line = place + visible_line(text) + "\n";
+    if (::write(STDERR_FILENO, line.data(), line.size()) < 0) return;  // nobody can be told
+  } catch (...) {                                                      // as in say_line()
   }
 }
 

@@ -14,6 +14,11 @@ void hold_standard_files();
 // One line on stderr, whatever lines `text` has. That nobody can read it is no reason to stop.
 void say_line(const std::string& text) noexcept;
 
+// A line on stderr that comes from beside the work: it takes the place of what the work painted at
+// a terminal's foot, and is not said where somebody would have to be waited for who no longer
+// reads.
+void say_aside(const std::string& text) noexcept;
+
 // On stdout, at once. Error{kNoRoom} or Error{kBadInput} if not all of it arrived.
 void say_result(const std::string& text);
 

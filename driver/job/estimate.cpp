@@ -57,6 +57,7 @@ void report(const JobHeader& header, const Totals& totals, const std::string& ou
   const Estimate estimate = estimate_of(header, totals);
   const nlohmann::ordered_json json = {{"job", out},
                                        {"layers", totals.layers},
+                                       {"kept_layers", totals.kept},
                                        {"size_px", header.box.size_px},
                                        {"solid_voxels", totals.target_vx},
                                        {"mask_pixels", totals.mask_px},

@@ -16,6 +16,7 @@ namespace binderjet {
 
 struct Totals {
   int layers = 0;
+  int kept = 0;  // of these, that an interrupted slice had left
   std::int64_t mask_px = 0;
   std::int64_t target_vx = 0;
   RuleTally rules;

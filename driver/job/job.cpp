@@ -67,9 +67,10 @@ void check_ranges(const JobHeader& header, const std::string& where) {
   for (const Source& source : header.sources) {
     const Placement& placement = source.placement;
     demand("unit_mm", placement.unit_mm, 1e-9, 1e9);
-    demand("scale", placement.scale, 1e-9, 1e9);
-    demand("wall_mm", placement.wall_mm, 0, 1e6);
-    for (const double degrees : placement.rotate_deg) demand("rotate_deg", degrees, -1e9, 1e9);
+    demand("scale", placement.scale, kLeastScale, kMostScale);
+    demand("wall_mm", placement.wall_mm, 0, kMostWallMm);
+    for (const double degrees : placement.rotate_deg)
+      demand("rotate_deg", degrees, -kMostDegrees, kMostDegrees);
     for (const int corner : source.corner_px)
       demand("corner_px", corner, -kMostPixels, kMostPixels);
   }

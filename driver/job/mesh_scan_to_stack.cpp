@@ -1,8 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "driver/job/mesh_scan_to_stack.h"
 
+#include <fmt/format.h>
 #include <oneapi/tbb/parallel_for.h>
 
+#include <algorithm>
+#include <cmath>
 #include <memory>
 #include <utility>
 
@@ -16,6 +19,8 @@ namespace {
 
 // Fine enough for any printer's voxels; edges are then found between samples.
 constexpr double kPitchMm = 0.05;
+// Larger than any printer's bed; what is larger still was measured in another unit.
+constexpr double kMostMm = 2000;
 
 }  // namespace
 
@@ -31,6 +36,14 @@ void write_scan_stack(const std::string& mesh, double layer_mm, const std::strin
     for (double& value : point) value *= file.unit_mm;
   }
   const Box box = bounding_box(file.mesh);
+  for (int axis = 0; axis < 3; ++axis) {
+    if (!(box.size(axis) <= kMostMm && std::abs(box.min[static_cast<std::size_t>(axis)]) <= 1e6)) {
+      throw Error(ErrorKind::kBadInput, mesh,
+                  fmt::format("is {:.4g} mm large, more than any bed; if its numbers are "
+                              "micrometers, scale the scan to millimeters first",
+                              std::max({box.size(0), box.size(1), box.size(2)})));
+    }
+  }
   for (Point& point : file.mesh.points) {
     for (std::size_t axis = 0; axis < 3; ++axis) point[axis] -= box.min[axis];
   }

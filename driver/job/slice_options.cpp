@@ -38,15 +38,16 @@ std::vector<std::optional<Number>> split(const std::string& option, const std::s
   return values;
 }
 
-// Unlike CLI::PositiveNumber it refuses nan, and what no part has.
-CLI::Validator above_zero() {
-  constexpr double kMost = 1e9;
-  return {[](const std::string& text) {
+// Unlike CLI::Range it refuses nan.
+CLI::Validator between(double least, double most) {
+  return {[least, most](const std::string& text) {
             double value = 0;
-            const bool good = CLI::detail::lexical_cast(text, value) && value > 0 && value <= kMost;
-            return good ? std::string() : "\"" + text + "\" is no number above 0";
+            if (CLI::detail::lexical_cast(text, value) && value >= least && value <= most) {
+              return std::string();
+            }
+            return fmt::format("\"{}\" is no number from {:g} to {:g}", text, least, most);
           },
-          "POSITIVE", "above_zero"};
+          "POSITIVE", "between"};
 }
 
 }  // namespace
@@ -94,11 +95,11 @@ void add_slice_options(CLI::App& verb, SliceOptions& options) {
                 "profile's model alone");
   verb.add_option("--layer", options.layer_mm, "layer height in mm, one the printer has");
   CLI::Option* scale = verb.add_option("--scale", options.placement.scale, "scale factor")
-                           ->check(above_zero())
+                           ->check(between(kLeastScale, kMostScale))
                            ->capture_default_str();
   verb.add_option("--size", options.size_mm,
                   "instead: scale each part so that its largest side is so many mm")
-      ->check(above_zero())
+      ->check(between(1e-6, 1e6))
       ->excludes(scale);
   verb.add_option("--units", options.units,
                   "the model's unit: mm, cm, m, um, in, ft (default: what the file says, else mm)");
@@ -110,7 +111,7 @@ void add_slice_options(CLI::App& verb, SliceOptions& options) {
       ->allow_extra_args(false);
   verb.add_option("--wall", options.placement.wall_mm,
                   "give a surface that encloses nothing, as of a scan, a wall this thick, in mm")
-      ->check(above_zero());
+      ->check(between(1e-6, kMostWallMm));
   verb.add_option("--texture", options.texture,
                   "the image for a model whose file has a place in it but names none");
   verb.add_flag("--color-enhance", options.color_enhance,

@@ -8,9 +8,11 @@
 #include <array>
 #include <filesystem>
 #include <optional>
+#include <span>
 #include <string>
 #include <utility>
 
+#include "driver/base/files.h"
 #include "driver/job/parts.h"
 #include "slicer/base/error.h"
 #include "slicer/color/color.h"
@@ -41,8 +43,32 @@ Part load_part_of_size(const std::string& file, std::optional<double> unit_mm, P
     const std::array<double, 3> size =
         load_part(file, unit_mm, placement, false, work).request.size_mm;
     placement.scale = *size_mm / *std::max_element(size.begin(), size.end());
+    if (!(placement.scale >= kLeastScale && placement.scale <= kMostScale)) {
+      throw Error(ErrorKind::kUsage, "--size",
+                  fmt::format("would scale {} by {:g}; its unit is likely another one", file,
+                              placement.scale));
+    }
   }
   return load_part(file, unit_mm, placement, true, work);
+}
+
+// A header names a model's own file; what that leads to, textures among them, it does not.
+void add_paint(const Paint& paint, Fingerprint& print) {
+  print.add_list(paint.samples);
+  print.add_list(paint.sample_colors);
+  print.add_list(paint.points);
+  print.add_list(paint.triangles);
+  print.add_list(paint.corners);
+  print.add_list(paint.images);
+  print.add_list(paint.uvs);
+  for (const TextureSource& texture : paint.textures) {
+    print.add(std::as_bytes(std::span(texture.tiling)));
+    print.add_list(texture.bytes);
+    std::error_code error;
+    if (!std::filesystem::is_regular_file(texture.path, error)) continue;
+    const std::string hash = file_hash(texture.path);
+    print.add(std::as_bytes(std::span(hash)));
+  }
 }
 
 // Reads the parts and decides where each stands: where --at says, else as they fit.
@@ -92,6 +118,8 @@ SlicePlan plan_slices(const SliceOptions& options, const Console& console) {
     plan.warnings.insert(plan.warnings.end(), part.warnings.begin(), part.warnings.end());
     plan.doubtful_size |= part.doubtful_size;
   }
+  Fingerprint print;
+  for (const Part& part : parts) add_paint(part.paint, print);
   plan.color = take_color(parts, header.grid, header.profile.color, plan.warnings, work);
   for (const std::string& warning : plan.warnings) console.warning(warning);
   for (const Part& part : parts) {
@@ -100,6 +128,9 @@ SlicePlan plan_slices(const SliceOptions& options, const Console& console) {
                              size[1], size[2]));
   }
   plan.mesh = std::make_shared<const Mesh>(merge_parts(std::move(parts), header.grid));
+  print.add_list(plan.mesh->points);
+  print.add_list(plan.mesh->triangles);
+  plan.fingerprint = print.text();
   header.box = job_box(bounding_box(*plan.mesh).max, header.grid, lower_corner(header.sources),
                        PrinterModel(header.profile.effects, header.grid).reach().xy_vx);
   if (options.color_enhance) {

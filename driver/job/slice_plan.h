@@ -17,6 +17,7 @@ struct SlicePlan {
   JobHeader header;
   std::shared_ptr<const Mesh> mesh;
   std::shared_ptr<const ColorField> color;  // null: no part has any
+  std::string fingerprint;  // of all that the layers are made from beside the header
   std::vector<std::string> warnings;
   bool doubtful_size = false;  // of a part; a warning says which unit is likely
 };

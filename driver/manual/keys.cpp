@@ -287,15 +287,16 @@ const std::map<std::string, std::vector<KeyTable> (*)()>& pages() {
   static const std::map<std::string, std::vector<KeyTable> (*)()> all = {
       {"slice",
        [] {
-         return std::vector{result(Keys{{"job", "the file that was written"},
-                                        {"layers", "number of layers written"},
-                                        {"size_px", "the job's box: pixels along x and y, layers"},
-                                        {"solid_voxels", "number of voxels of the target"},
-                                        {"mask_pixels", "number of pixels that get binder"},
-                                        {"seconds", "how long slicing took, s"},
-                                        {"peak_rss_mb", "the most memory that it held, MB"}} +
-                                   print_estimate() +
-                                   Keys{{"warnings[]", "what a person should know"}})};
+         return std::vector{
+             result(Keys{{"job", "the file that was written"},
+                         {"layers", "number of layers written"},
+                         {"kept_layers", "how many of them an interrupted slice had left"},
+                         {"size_px", "the job's box: pixels along x and y, layers"},
+                         {"solid_voxels", "number of voxels of the target"},
+                         {"mask_pixels", "number of pixels that get binder"},
+                         {"seconds", "how long slicing took, s; the rest of it, if interrupted"},
+                         {"peak_rss_mb", "the most memory that it held, MB"}} +
+                    print_estimate() + Keys{{"warnings[]", "what a person should know"}})};
        }},
       {"export",
        [] {

@@ -264,7 +264,7 @@ Profile parse_profile(const std::string& text, const std::string& path) {
   profile.source = root.text("source");
 
   Table grid = root.table("grid");
-  profile.dpi = fixed<2>(grid.numbers("dpi", 2, 0, 10000));
+  profile.dpi = fixed<2>(grid.numbers("dpi", 2, 0.5, 10000));
   profile.layer_mm = grid.numbers("layer_mm", 0, 0.001, 10);
   const toml::node& detail = grid.need("detail_vx");
   const std::vector<double> detail_vx = grid.numbers("detail_vx", 3, 0, 16);

@@ -5,9 +5,12 @@
 #include <OpenImageIO/imageio.h>
 
 #include <algorithm>
-#include <initializer_list>
+#include <cstring>
+#include <fstream>
 #include <memory>
 #include <string>
+#include <string_view>
+#include <vector>
 
 namespace binderjet {
 namespace {
@@ -18,36 +21,57 @@ struct Open {
   std::unique_ptr<OIIO::ImageInput> input;
 };
 
-const char* format_of(std::span<const std::byte> bytes) {
-  const auto starts = [&](std::initializer_list<unsigned> magic) {
-    std::size_t i = 0;
-    return bytes.size() >= magic.size() && std::all_of(magic.begin(), magic.end(), [&](unsigned m) {
-             return std::to_integer<unsigned>(bytes[i++]) == m;
-           });
+// OpenImageIO's name of the format that the bytes begin with. Its other decoders, some of which
+// crash on a stranger's bytes or take gigabytes for them, are not asked. TGA begins with nothing of
+// its own.
+const char* format_of(std::span<const std::byte> begin, const std::string& path) {
+  const auto starts = [&](std::string_view magic) {
+    return begin.size() >= magic.size() &&
+           std::memcmp(begin.data(), magic.data(), magic.size()) == 0;
   };
-  if (starts({0xff, 0xd8})) return "image.jpg";
-  if (starts({'R', 'I', 'F', 'F'})) return "image.webp";
-  if (starts({'B', 'M'})) return "image.bmp";
-  return "image.png";
+  if (starts("\x89PNG")) return "png";
+  if (starts("\xff\xd8")) return "jpeg";
+  if (starts("RIFF")) return "webp";
+  if (starts("BM")) return "bmp";
+  if (starts({"II*\0", 4}) || starts({"MM\0*", 4}) || starts({"II+\0", 4}) ||
+      starts({"MM\0+", 4})) {
+    return "tiff";
+  }
+  if (begin.size() > 1 && starts("P") && begin[1] >= std::byte{'1'} && begin[1] <= std::byte{'6'}) {
+    return "pnm";
+  }
+  if (path.ends_with(".tga") || path.ends_with(".TGA")) return "targa";
+  throw std::runtime_error("is none of PNG, TIFF, JPEG, WebP, BMP, TGA and PNM");
+}
+
+std::vector<std::byte> first_bytes(const std::string& path) {
+  std::vector<std::byte> bytes(16);
+  std::ifstream file(path, std::ios::binary);
+  file.read(reinterpret_cast<char*>(bytes.data()), static_cast<std::streamsize>(bytes.size()));
+  bytes.resize(static_cast<std::size_t>(std::max<std::streamsize>(file.gcount(), 0)));
+  return bytes;
 }
 
 Open open_image(const ImageRequest& request, std::span<const std::byte> content) {
   Open open;
+  OIIO::ImageSpec spec;
   OIIO::ImageSpec config;
   // A transparent texel keeps its color.
   if (request.wish != ImageWish::kGray) config.attribute("oiio:UnassociatedAlpha", 1);
+  // Not ImageInput::open, which chooses by the file's name, and looks for one even for bytes.
   if (request.is_path != 0) {
     const std::string path(reinterpret_cast<const char*>(content.data()), content.size());
-    open.input = OIIO::ImageInput::open(path, &config);
+    open.input = OIIO::ImageInput::create(format_of(first_bytes(path), path));
+    if (open.input != nullptr && !open.input->open(path, spec, config)) {
+      throw std::runtime_error(open.input->geterror());
+    }
   } else {
-    // Not ImageInput::open, which looks for a file of that name even so.
-    const char* name = format_of(content);
+    const char* format = format_of(content, "");
     open.memory = std::make_unique<OIIO::Filesystem::IOMemReader>(
         const_cast<std::byte*>(content.data()), content.size());
-    open.input = OIIO::ImageInput::create(name, false, nullptr, open.memory.get());
-    OIIO::ImageSpec spec;
+    open.input = OIIO::ImageInput::create(format, false, nullptr, open.memory.get());
     const bool good = open.input != nullptr && open.input->set_ioproxy(open.memory.get()) &&
-                      open.input->open(name, spec, config);
+                      open.input->open(std::string("image.") + format, spec, config);
     if (!good) open.input.reset();
   }
   if (open.input == nullptr) throw std::runtime_error(OIIO::geterror());

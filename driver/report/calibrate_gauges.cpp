@@ -57,7 +57,7 @@ void calibrate_gauges(const std::string& profile, const std::string& gauges,
                       const std::string& folder, const Console& console) {
   const Profile declared = load_profile(profile);
   const GaugeTable table = read_gauge_table(gauges);
-  make_folders(folder);
+  const OutputFolder out(folder);
   GaugeSummary summary;
   std::string written;
   std::vector<TextFile> files;

@@ -16,6 +16,7 @@
 #include <vector>
 
 #include "driver/base/interrupt.h"
+#include "driver/base/said.h"
 #include "driver/base/transport_errors.h"
 #include "driver/emulator/folder_printer.h"
 #include "driver/job/encoded_layers.h"
@@ -256,6 +257,7 @@ std::vector<std::string> usb_models() {
 BackendOptions backend_options(bool with_state) {
   BackendOptions options;
   options.stop_asked = [] { return interrupted(); };
+  options.say_wait = say_aside;
   if (with_state) {
     options.state_folder = state_folder();
     options.usb_models = usb_models();

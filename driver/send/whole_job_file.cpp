@@ -48,6 +48,12 @@ JobReader open_whole_job(const std::string& path) {
     throw Error(ErrorKind::kBadInput, path,
                 fmt::format("has more layers than the {} of its header: slice again", layer_count));
   }
+  const auto header = nlohmann::json::parse(job.header(), nullptr, false);
+  if (header.contains("color") &&
+      static_cast<int>(job.layers(RecordKind::kColor).size()) != layer_count) {
+    throw Error(ErrorKind::kBadInput, path,
+                "lacks color in layers, which its header promises: slice again");
+  }
   return job;
 }
 

@@ -148,7 +148,7 @@ void run(const CalibrateOptions& options, const Console& console) {
     throw Error(ErrorKind::kUsage, "--check-job", "goes together with --check-measured");
   }
   const fs::path folder(options.out);
-  make_folders(options.out);
+  const OutputFolder out(options.out);
   const Profile profile = load_profile(options.profile);
   std::vector<MeasuredJob> checks;
   const MeasuredJob job =

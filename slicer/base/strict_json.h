@@ -29,6 +29,10 @@ void get_int(const Json& json, int& value, const std::string& where) {
 
 template <class Json, std::size_t N>
 void get_int(const Json& json, std::array<int, N>& values, const std::string& where) {
+  if (!json.is_array() || json.size() != N) {
+    throw Error(ErrorKind::kBadInput, where,
+                "has " + json.dump() + " where " + std::to_string(N) + " whole numbers belong");
+  }
   for (std::size_t i = 0; i < N; ++i) get_int(json.at(i), values[i], where);
 }
 

@@ -9,13 +9,51 @@
 #include <cstdio>
 #include <cstring>
 #include <filesystem>
+#include <mutex>
 #include <random>
+#include <set>
 
 #include "slicer/base/error.h"
 
 namespace binderjet {
 
 namespace fs = std::filesystem;
+
+namespace {
+
+// Never destroyed: a thread may ask for it while the program ends.
+struct Unfinished {
+  std::mutex mutex;
+  std::set<std::string> paths;
+};
+Unfinished& unfinished() {
+  static Unfinished& all = *new Unfinished;
+  return all;
+}
+
+}  // namespace
+
+void note_unfinished(const std::string& path) {
+  const std::lock_guard lock(unfinished().mutex);
+  unfinished().paths.insert(path);
+}
+
+void forget_unfinished(const std::string& path) {
+  const std::lock_guard lock(unfinished().mutex);
+  unfinished().paths.erase(path);
+}
+
+void remove_unfinished() {
+  unfinished().mutex.lock();
+  for (const std::string& path : unfinished().paths) {
+    // Other threads may still be writing into a folder.
+    constexpr int kTries = 5;
+    std::error_code error;
+    for (int i = 0; i < kTries && fs::exists(fs::symlink_status(path, error)); ++i) {
+      fs::remove_all(path, error);
+    }
+  }
+}
 
 WholeFile::WholeFile(const std::string& path) : path_(path) {
   std::error_code error;
@@ -29,6 +67,7 @@ WholeFile::WholeFile(const std::string& path) : path_(path) {
     const int fd = open(part_.c_str(), O_CREAT | O_EXCL | O_WRONLY | O_CLOEXEC, 0666);
     if (fd >= 0) {
       close(fd);
+      note_unfinished(part_);
       return;
     }
   } while (errno == EEXIST);
@@ -36,14 +75,27 @@ WholeFile::WholeFile(const std::string& path) : path_(path) {
 }
 
 WholeFile::~WholeFile() {
-  if (!part_.empty()) std::remove(part_.c_str());
+  if (part_.empty()) return;
+  std::remove(part_.c_str());
+  forget_unfinished(part_);
 }
 
 void WholeFile::keep() {
   sync_file(part_);
+  forget_unfinished(part_);
   if (std::rename(part_.c_str(), path_.c_str()) != 0) fail_to_write(path_);
   part_.clear();
   sync_folder_of(path_);
+}
+
+OutputFolder::OutputFolder(const std::string& path) : path_(path) {
+  std::error_code error;
+  is_new_ = !fs::exists(path, error);
+  make_folders(path);
+}
+
+OutputFolder::~OutputFolder() {
+  if (is_new_) ::rmdir(path_.c_str());  // not where something is in it
 }
 
 void fail_to_write(const std::string& path) {

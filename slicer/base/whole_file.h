@@ -28,6 +28,27 @@ class WholeFile {
   std::string part_;  // empty once kept
 };
 
+// A folder to write into, made with its parents. If it is new and nothing comes into it, it goes
+// again. Fails as files do.
+class OutputFolder {
+ public:
+  explicit OutputFolder(const std::string& path);
+  ~OutputFolder();
+  OutputFolder(const OutputFolder&) = delete;
+  OutputFolder& operator=(const OutputFolder&) = delete;
+
+ private:
+  std::string path_;
+  bool is_new_;
+};
+
+// The temporary names of files and folders under way: a program that must end at once takes them
+// along. Who is about to give one its name forgets it first.
+void note_unfinished(const std::string& path);
+void forget_unfinished(const std::string& path);
+// For who ends the process then: whoever is about to give a name waits from here on.
+void remove_unfinished();
+
 // errno as the Error of a file that cannot be written: kNoRoom if the disk is full, else kBadInput.
 [[noreturn]] void fail_to_write(const std::string& path);
 

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Images of any format that OpenImageIO knows, decoded by a program of its own, binderjet-read.
+// Images as PNG, TIFF, JPEG, WebP, BMP, TGA or PNM, decoded by a program of its own,
+// binderjet-read.
 //
 // A stranger's image that crashes its decoder, or never ends, costs that process, and this one says
 // which image it was. The price is a start, 0.3 s of CPU, for the first image; the process then

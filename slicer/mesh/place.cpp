@@ -302,9 +302,10 @@ Point transform_part(Mesh& mesh, const Placement& placement, const std::string& 
         fmt::format("cannot be scaled by {:g}; --scale takes a number above 0", placement.scale));
   }
   for (const double degrees : placement.rotate_deg) {
-    if (!std::isfinite(degrees)) {
+    if (!(std::abs(degrees) <= kMostDegrees)) {
       throw Error(ErrorKind::kUsage, where,
-                  fmt::format("cannot be turned by {:g}; --rotate takes degrees", degrees));
+                  fmt::format("cannot be turned by {:g}; --rotate takes degrees, up to {:g}",
+                              degrees, kMostDegrees));
     }
   }
   transform_mesh(mesh, factor, placement.rotate_deg);

@@ -12,6 +12,12 @@
 
 namespace binderjet {
 
+// What a Placement may hold; a job's header and the options that lead there have the same bounds.
+inline constexpr double kLeastScale = 1e-9;
+inline constexpr double kMostScale = 1e9;
+inline constexpr double kMostWallMm = 1e6;
+inline constexpr double kMostDegrees = 1e9;
+
 struct Placement {
   double unit_mm = 1.0;  // what one unit of the file is
   double scale = 1.0;

@@ -2,6 +2,7 @@
 // Slice stacks in: stack.json checked, images of any format.
 #include <fmt/printf.h>
 
+#include <cmath>
 #include <filesystem>
 #include <fstream>
 #include <nlohmann/json.hpp>
@@ -16,11 +17,17 @@
 namespace binderjet {
 namespace {
 
+// Of a file in the folder itself, which the system reads as it is written.
+bool is_plain_name(const std::string& name) {
+  return !name.empty() && name != "." && name != ".." &&
+         name.find_first_of(std::string("/\0", 2)) == std::string::npos;
+}
+
 // A pattern with exactly one %d or %0Nd and no other %, so that printf can be trusted with it, and
 // no way out of the folder.
 bool good_pattern(const std::string& files) {
   const std::size_t percent = files.find('%');
-  if (percent == std::string::npos || files.find('/') != std::string::npos) return false;
+  if (percent == std::string::npos || !is_plain_name(files)) return false;
   std::size_t i = percent + 1;
   while (i < files.size() && files[i] >= '0' && files[i] <= '9' && i < percent + 4) ++i;
   return i < files.size() && files[i] == 'd' && files.find('%', i) == std::string::npos;
@@ -59,7 +66,7 @@ StackInfo read_stack_info(const std::string& folder) {
     get_int(json.at("first"), info.first, path);
     if (json.contains("also")) json.at("also").get_to(info.also);
     for (const std::string& name : info.also) {
-      if (name.empty() || name == "." || name == ".." || name.find('/') != std::string::npos) {
+      if (!is_plain_name(name)) {
         throw Error(ErrorKind::kBadInput, path, "\"also\" names files of the folder, no others");
       }
     }
@@ -70,9 +77,17 @@ StackInfo read_stack_info(const std::string& folder) {
       if (info.size[axis] < 1 || info.size[axis] > kMost) {
         throw Error(ErrorKind::kBadInput, path, "has a size outside 1 to 2^20");
       }
-      if (!(info.pitch_mm[axis] > 0 && info.pitch_mm[axis] < 1000)) {
-        throw Error(ErrorKind::kBadInput, path, "has a pitch outside 0 to 1000 mm");
+      if (!(info.pitch_mm[axis] >= 1e-4 && info.pitch_mm[axis] < 1000)) {
+        throw Error(ErrorKind::kBadInput, path, "has a pitch outside 0.0001 to 1000 mm");
       }
+      if (!(std::abs(info.origin_mm[axis]) <= 1e6)) {
+        throw Error(ErrorKind::kBadInput, path, "has an origin more than a kilometer away");
+      }
+    }
+    // Gray values of a whole image are held at once.
+    constexpr std::int64_t kMostSamples = 1 << 28;
+    if (std::int64_t{info.size[0]} * info.size[1] > kMostSamples) {
+      throw Error(ErrorKind::kBadInput, path, "has images of more than 2^28 samples");
     }
     if (info.first < 0 || info.first > kMaxImages) {
       throw Error(ErrorKind::kBadInput, path, "numbers its images from outside 0 to 2^30");

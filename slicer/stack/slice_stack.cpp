@@ -127,15 +127,20 @@ StackWriter::StackWriter(const std::string& folder, StackInfo info)
   std::random_device chance;
   do {
     part_ = fmt::format("{}.part-{:08x}", folder_, chance());
-    if (::mkdir(part_.c_str(), 0777) == 0) return;
+    if (::mkdir(part_.c_str(), 0777) == 0) {
+      note_unfinished(part_);
+      return;
+    }
   } while (errno == EEXIST);
   part_.clear();
   fail_to_write(folder_);
 }
 
 StackWriter::~StackWriter() {
+  if (part_.empty()) return;
   std::error_code error;
-  if (!part_.empty()) fs::remove_all(part_, error);
+  fs::remove_all(part_, error);
+  forget_unfinished(part_);
 }
 
 void StackWriter::write(int index, const RunLayer& layer) const {
@@ -177,6 +182,7 @@ void StackWriter::complete() {
 void StackWriter::finish() {
   if (!complete_) complete();
   const std::vector<std::string> earlier = earlier_files(folder_);
+  forget_unfinished(part_);
   std::error_code error;
   if (fs::exists(folder_, error)) {
     if (!change_places(part_, folder_)) fail_to_write(folder_);

@@ -75,7 +75,7 @@ class StackWriter {
   StackInfo info_;
 };
 
-// Reads a stack that anybody wrote: any image format that binderjet-read knows, 1-bit or gray.
+// Reads a stack that anybody wrote: any image format of read_image.h, 1-bit or gray.
 class StackReader {
  public:
   // Error{kBadInput} if stack.json is not there, not one of ours or names a missing image.

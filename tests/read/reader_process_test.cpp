@@ -94,6 +94,22 @@ TEST(ReadImage, NamesWhatIsNoImageAndReadsTheNext) {
   EXPECT_EQ(read_color_image(source, 2).samples, (std::vector<std::uint8_t>{0x28, 0x38, 0x48}));
 }
 
+// OpenImageIO knows a hundred formats; a few decoders are enough to trust.
+TEST(ReadImage, RefusesAFormatThatIsNotNamed) {
+  const colored::Folder folder;
+  const std::string path = folder.file("one.png");
+  std::ofstream(path) << std::string(
+      "GIF89a\1\0\1\0\x80\0\0\xff\xff\xff\0\0\0,\0\0\0\0\1\0\1\0\0"
+      "\2\2D\1\0;",
+      35);
+  try {
+    read_gray_image({path, {}, path});
+    FAIL() << "it was read";
+  } catch (const Error& error) {
+    EXPECT_THAT(error.what(), HasSubstr("is none of PNG, TIFF"));
+  }
+}
+
 // A header alone must not make anybody allocate.
 TEST(ReadImage, RefusesWhatPromisesMorePixelsThanAreRead) {
   const colored::Folder folder;

@@ -98,19 +98,20 @@ TEST_F(Waiting, ForTheSpoolsLockHearsASignal) {
   ASSERT_EQ(here_.run({"print", here_ / "a.bjob", "--to", spool}).status, 0);
   const int lock = ::open((here_ / "spool/last-id").c_str(), O_RDWR | O_CLOEXEC);
   ASSERT_EQ(flock(lock, LOCK_EX), 0);
-  for (const int signal : {SIGINT, SIGTERM, SIGHUP}) {
-    for (const std::vector<std::string>& words : {std::vector<std::string>{"status", "--to", spool},
-                                                  {"print", here_ / "a.bjob", "--to", spool},
-                                                  {"cancel", "1", "--to", spool}}) {
-      const Ran ran = here_.run(words, 10, 0, [&](pid_t program) {
-        for (int tries = 0; tries < 6000 && !waits_for_a_lock(program); ++tries) {
-          std::this_thread::sleep_for(std::chrono::milliseconds(5));
-        }
-        kill(program, signal);
-      });
-      EXPECT_EQ(ran.status, 130) << words.front() << ": " << ran.err;
-      EXPECT_THAT(ran.err, HasSubstr("interrupted")) << words.front();
-    }
+  const std::vector<std::pair<int, std::vector<std::string>>> cases = {
+      {SIGINT, {"status", "--to", spool}},
+      {SIGTERM, {"print", here_ / "a.bjob", "--to", spool}},
+      {SIGHUP, {"cancel", "1", "--to", spool}}};
+  for (const auto& [signal, words] : cases) {
+    const Ran ran = here_.run(words, 10, 0, [&, signal = signal](pid_t program) {
+      for (int tries = 0; tries < 6000 && !waits_for_a_lock(program); ++tries) {
+        std::this_thread::sleep_for(std::chrono::milliseconds(5));
+      }
+      kill(program, signal);
+    });
+    EXPECT_EQ(ran.status, 130) << words.front() << ": " << ran.err;
+    EXPECT_THAT(ran.err, HasSubstr("waits for another process")) << words.front();
+    EXPECT_THAT(ran.err, HasSubstr("interrupted")) << words.front();
   }
   ::close(lock);
 }

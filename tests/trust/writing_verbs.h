@@ -7,6 +7,7 @@
 #include <sys/mount.h>
 
 #include <algorithm>
+#include <regex>
 #include <string>
 #include <vector>
 
@@ -50,15 +51,17 @@ inline std::vector<Verb> writing_verbs() {
   };
 }
 
-// What a verb may leave where it could not finish: folders, and of a job on its way to a spool what
-// spool.h says. Nothing under a final name.
+// What a verb may leave where it could not finish: folders, of a job on its way to a spool what
+// spool.h says, and of a slice what unfinished_slice.h says. Nothing under a final name.
 inline std::vector<std::string> left_behind(const std::string& folder) {
   std::vector<std::string> files;
   for (const auto& entry : std::filesystem::recursive_directory_iterator(folder)) {
     if (entry.is_directory()) continue;
     const std::string name = entry.path().string().substr(folder.size() + 1);
     const bool of_a_spool = name == "last-id" || name.starts_with("held/");
-    if (!of_a_spool) files.push_back(name);
+    const bool of_a_slice =
+        std::regex_match(name, std::regex("a\\.bjob\\.[0-9a-f]{16}\\.(part|totals)"));
+    if (!of_a_spool && !of_a_slice) files.push_back(name);
   }
   return files;
 }

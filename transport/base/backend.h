@@ -70,11 +70,15 @@ class Backend {
   virtual Result<std::string> header(const std::string& id) = 0;
 };
 
+// Told what is waited for where that takes longer than usual; once per wait.
+using SayWait = std::function<void(const std::string& what)>;
+
 // What a backend may be given; open/ says which of it a scheme reads.
 struct BackendOptions {
   std::string state_folder;  // where jobs for devices keep their journals; its parent exists
   std::vector<std::string> usb_models;  // "vid:pid word..." that usb: may mean, with their quirks
   std::function<bool()> stop_asked;     // asked during waits; true ends them with kInterrupted
+  SayWait say_wait;
 };
 
 }  // namespace binderjet

@@ -46,6 +46,7 @@ Result<std::unique_ptr<Backend>> make_emulator_backend(const std::string& uri,
   access.patience = *patience;
   access.journals = emulator_journals(*folder);
   access.stop_asked = options.stop_asked;
+  access.say_wait = options.say_wait;
   access.open = [folder = *folder, plain](const std::string&) {
     return SocketLink::open(folder, plain);
   };

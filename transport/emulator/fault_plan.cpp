@@ -84,7 +84,8 @@ std::optional<PlannedFault> parse_fault(const std::string& text) {
     if (word != name) continue;
     PlannedFault fault{one};
     if (!take_number(rest, '@', fault.layer) || !take_number(rest, 'x', fault.times) ||
-        !take_number(rest, ':', fault.ms) || !rest.empty()) {
+        !take_number(rest, ':', fault.ms) || !rest.empty() || fault.layer < 0 || fault.times < -1 ||
+        fault.ms < 0) {
       return std::nullopt;
     }
     return fault;

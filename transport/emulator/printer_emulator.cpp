@@ -66,7 +66,7 @@ void PrinterEmulator::store_layer() {
   EmulatedJob& job = jobs_.back();
   const std::vector<std::byte> records = std::move(waiting_.front().records);
   waiting_.pop_front();
-  record_[job.number].push_back(static_cast<int>(job.layers.size()));
+  if (options_.keep_layers) record_[job.number].push_back(static_cast<int>(job.layers.size()));
   job.digests.push_back(protocol::next_digest(job.digests.back(), records));
   job.layers.push_back(options_.keep_layers ? records : std::vector<std::byte>());
   if (options_.watcher != nullptr) options_.watcher->prints(job, records);

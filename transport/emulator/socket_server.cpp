@@ -103,7 +103,7 @@ class Host {
 
   // The OUT pipe; whether anything moved.
   bool offer() {
-    if (in_.empty() || halted_out_) return false;
+    if (in_.empty() || halted_out_ || out_.size() > kMaxUnheard) return false;
     const UsbTaken taken = printer_.bulk_out(in_);
     in_.erase(in_.begin(), in_.begin() + static_cast<std::ptrdiff_t>(taken.bytes));
     if (taken.bytes > 0) {
@@ -180,17 +180,22 @@ void serve_on_socket(PrinterEmulator& printer, const PrinterSocket& socket,
                      const std::function<bool()>& stop) {
   std::unique_ptr<Host> host;
   int retry_ms = kFirstRetryMs;
+  bool accepts = true;
   while (!stop()) {
     std::array<pollfd, 2> ready{
-        pollfd{socket.fd(), POLLIN, 0},
+        pollfd{accepts ? socket.fd() : -1, POLLIN, 0},
         pollfd{host ? host->fd() : -1, host ? host->events() : short{0}, 0}};
     poll(ready.data(), ready.size(), host ? retry_ms : kIdleMs);
     if (host && (has_left(*host) || !host->attend())) host.reset();
     if (host) {
       retry_ms = host->moved() ? kFirstRetryMs : std::min(2 * retry_ms, kLastRetryMs);
     }
+    accepts = true;
     if ((ready[0].revents & POLLIN) == 0) continue;
     File newcomer(accept4(socket.fd(), nullptr, nullptr, SOCK_CLOEXEC | SOCK_NONBLOCK));
+    // Without a descriptor for it the newcomer stays, and would be seen again at once: not in the
+    // next round.
+    accepts = static_cast<bool>(newcomer);
     if (!newcomer) continue;
     // A program that restarts its link has closed the old one before. One that never greeted has
     // no claim.

@@ -32,7 +32,7 @@ class JobWriter {
  public:
   static Result<JobWriter> create(const std::string& path, std::string_view header);
 
-  // The spool's way: the unfinished file has the name `part` and outlives the writer.
+  // For work that is gone on with: the unfinished file has the name `part` and outlives the writer.
   static Result<JobWriter> create_kept(const std::string& part, const std::string& path,
                                        std::string_view header);
   // Goes on with such a file after its first `bytes` bytes, which must be whole records, and

@@ -113,6 +113,7 @@ Result<JobWriter> JobWriter::create(const std::string& path, std::string_view he
 
 Result<JobWriter> JobWriter::reopen_kept(const std::string& part, const std::string& path,
                                          std::uint64_t bytes) {
+  if (auto free = check_replaceable(path); !free) return tl::unexpected(free.error());
   Result<File> file = open_file(part, O_RDWR);
   if (!file) return tl::unexpected(file.error());
   const Result<std::uint64_t> size = file_bytes(*file, part);
@@ -225,7 +226,9 @@ Result<void> JobWriter::finish() {
   if (auto done = rename_path(part_, path_); !done) return done;
   file_ = File();
   failed_ = false;
-  return sync_folder(folder_of(path_));
+  auto synced = sync_folder(folder_of(path_));
+  if (!synced) synced.error().what += "; the job is whole, but a loss of power may undo its name";
+  return synced;
 }
 
 }  // namespace binderjet

@@ -84,7 +84,7 @@ class FileBackend : public Backend {
 
 }  // namespace
 
-std::unique_ptr<Backend> make_file_backend(const std::string& path) {
+std::unique_ptr<Backend> make_file_backend(const std::string& path, const BackendOptions&) {
   return std::make_unique<FileBackend>(path);
 }
 

@@ -13,9 +13,9 @@ namespace {
 
 using Opened = Result<std::unique_ptr<Backend>>;
 
-// A backend that needs a path and nothing else.
-template <std::unique_ptr<Backend> (*make)(const std::string& path)>
-Opened open_at_path(const std::string& uri, const BackendOptions&) {
+// A backend whose URI is a path.
+template <std::unique_ptr<Backend> (*make)(const std::string& path, const BackendOptions& options)>
+Opened open_at_path(const std::string& uri, const BackendOptions& options) {
   std::string path = uri.substr(uri.find(':') + 1);
   // file:///tmp/a.bjob is the long form of file:/tmp/a.bjob.
   if (path.starts_with("///")) path.erase(0, 2);
@@ -25,7 +25,7 @@ Opened open_at_path(const std::string& uri, const BackendOptions&) {
     return tl::unexpected(
         Failure{FailureKind::kBadInput, uri, "no path behind the colon; use " + scheme_forms()});
   }
-  return make(path);
+  return make(path, options);
 }
 
 }  // namespace

@@ -32,7 +32,8 @@ const std::vector<Scheme>& schemes();
 // Null for a URI that names none.
 const Scheme* find_scheme(const std::string& uri);
 
-// "usb:, usb://VID:PID/SERIAL, emulator:DIR, spool:DIR or file:PATH"; `with_jobs`: only those that keep jobs.
+// "usb:, usb://VID:PID/SERIAL, emulator:DIR, spool:DIR or file:PATH"; `with_jobs`: only those that
+// keep jobs.
 std::string scheme_forms(bool with_jobs = false);
 
 // An unknown scheme is kBadInput.
@@ -40,6 +41,6 @@ Result<std::unique_ptr<Backend>> open_backend(const std::string& uri,
                                               const BackendOptions& options = {});
 
 // One job file, written as it comes; it has no queue and cannot resume.
-std::unique_ptr<Backend> make_file_backend(const std::string& path);
+std::unique_ptr<Backend> make_file_backend(const std::string& path, const BackendOptions& options);
 
 }  // namespace binderjet

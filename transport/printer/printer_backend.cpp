@@ -29,7 +29,7 @@ constexpr auto kCancelLimit = std::chrono::milliseconds(800);
 class PrinterBackend : public Backend {
  public:
   explicit PrinterBackend(PrinterAccess access)
-      : access_(std::move(access)), journals_(access_.journals) {}
+      : access_(std::move(access)), journals_(access_.journals, access_.say_wait) {}
   ~PrinterBackend() override { stop("its sender stopped"); }
 
   Result<std::string> start(const JobTicket& ticket) override;
@@ -55,7 +55,7 @@ class PrinterBackend : public Backend {
   // Holds the job, says where and why, and hands the fault on.
   tl::unexpected<Failure> stopped(Failure fault);
   void stop(const std::string& reason);
-  void forget_cancelled();
+  void forget_job();
 
   PrinterAccess access_;
   Spool journals_;
@@ -110,8 +110,9 @@ void PrinterBackend::stop(const std::string& reason) {
   if (job_) hold_job(journals_, *std::exchange(job_, std::nullopt), reason);
 }
 
-// A job that somebody cancelled is removed by its sender, who alone knows that nobody writes to it.
-void PrinterBackend::forget_cancelled() {
+// A job that somebody cancelled, or that never began, is removed by its sender, who alone knows
+// that nobody writes to it.
+void PrinterBackend::forget_job() {
   const SpooledJob job = *std::exchange(job_, std::nullopt);  // check_wanted() no longer looks
   const std::uint64_t number = job.journal.state().key;
   cancelled_ = false;
@@ -135,7 +136,7 @@ tl::unexpected<Failure> PrinterBackend::stopped(Failure fault) {
   fault.where = fmt::format("{}: layer {} of {}", fault.where.empty() ? access_.uri : fault.where,
                             layer, job_->layer_count());
   if (cancelled_) {
-    forget_cancelled();
+    forget_job();
   } else {
     stop(fault.what);
   }
@@ -191,19 +192,14 @@ Result<std::string> PrinterBackend::start(const JobTicket& ticket) {
   const std::string id = job_->id;
   Result<void> started = job_at_printer_->start(number, ticket.layer_count, ticket.header);
   if (!started && job_at_printer_->in_the_way() != 0 && job_at_printer_->in_the_way() != number) {
-    // Until the way is free the job has not begun: nothing of it is kept.
     started = make_way(job_at_printer_->in_the_way());
     if (started) started = job_at_printer_->start(number, ticket.layer_count, ticket.header);
-    if (!started) {
-      const Failure why = started.error();
-      const Result<File> lock = journals_.lock();
-      job_.reset();
-      job_at_printer_.reset();
-      if (lock) static_cast<void>(journals_.remove(journals_.incoming(id)));
-      return tl::unexpected(why);
-    }
   }
-  if (!started) return stopped(started.error());
+  if (!started) {
+    // Nobody has been told of the job yet, so nobody could resume it.
+    forget_job();
+    return tl::unexpected(started.error());
+  }
   return id;
 }
 
@@ -282,9 +278,14 @@ Result<void> PrinterBackend::cancel(const std::string& id) {
   const auto sender = std::make_shared<PrinterBackend>(access_);
   std::thread([sender, told, uri, number] {
     const auto until = Clock::now() + kCancelTime;
-    auto job = sender->connect(
-        uri, [] { return Result<void>(); }, [](int, std::uint64_t) { return Result<void>(); });
-    told->set_value(job && (*job)->cancel(number, until).has_value());
+    bool heard = false;
+    try {
+      auto job = sender->connect(
+          uri, [] { return Result<void>(); }, [](int, std::uint64_t) { return Result<void>(); });
+      heard = job && (*job)->cancel(number, until).has_value();
+    } catch (const std::exception&) {  // out of memory or of threads: the printer was not told
+    }
+    told->set_value(heard);
   }).detach();
   const bool heard = answer.wait_for(kCancelLimit) == std::future_status::ready && answer.get();
   if (heard) {

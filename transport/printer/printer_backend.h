@@ -20,6 +20,7 @@ struct PrinterAccess {
   std::chrono::milliseconds patience;  // a printer that does nothing for so long is a fault
   std::string journals;                // a folder; its parent exists, or will when `open` returns
   std::function<bool()> stop_asked;    // asked during waits; true ends them with kInterrupted
+  SayWait say_wait;
 
   // Opens the printer of a URI, claimed: nobody else prints to it meanwhile. The URI is the one
   // above, or the one that a link of such a printer gave.

@@ -105,8 +105,6 @@ Result<void> PrinterJob::reopen() {
     ready = open(false);
   }
   if (!ready) return tl::unexpected(ready.error());
-  posted_ = acknowledged_;
-  const int known = acknowledged_ + static_cast<int>(window_.size());
   const int there = static_cast<int>(ready->acknowledged);
   if (there < acknowledged_) {
     return final(
@@ -114,10 +112,10 @@ Result<void> PrinterJob::reopen() {
                     "cancel the job and print it again",
                     there));
   }
-  if (there > known && !window_.empty()) {
+  if (there > posted_) {
     return final("the printer acknowledges layers it was not sent; cancel the job");
   }
-  posted_ = std::max(posted_, there);
+  posted_ = there;
   return take_progress(*ready);
 }
 
@@ -145,6 +143,8 @@ Result<int> PrinterJob::resume(std::uint64_t number, int layers, const std::stri
   acknowledged_ = acknowledged;
   digest_ = acknowledged == 0 ? protocol::first_digest(header, static_cast<std::uint32_t>(layers))
                               : digest;
+  // An earlier process may have sent as many as the printer ever has room for.
+  posted_ = std::min(layers, acknowledged + static_cast<int>(protocol::kMaxCredits));
   if (auto done = reopen(); !done) {
     if (auto healed = recover(done.error()); !healed) return tl::unexpected(healed.error());
   }

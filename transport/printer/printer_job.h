@@ -93,7 +93,7 @@ class PrinterJob {
   int acknowledged_ = 0;
   std::uint64_t digest_ = 0;  // of the acknowledged layers
   std::deque<Sent> window_;   // layers acknowledged_ and on
-  int posted_ = 0;            // layers below this are on their way
+  int posted_ = 0;            // layers below this are on their way, or were
   int limit_ = 0;             // layers below this may be
   bool open_ = false;         // the printer has said READY in this session
   bool healable_ = false;     // the last fault of take()

@@ -20,6 +20,7 @@ constexpr std::size_t kMaxAnswerBytes = 160 << 10;
 constexpr std::size_t kMaxNoiseBytes = 1 << 20;
 constexpr auto kCheckTime = std::chrono::milliseconds(100);
 constexpr auto kAskTime = std::chrono::seconds(2);
+constexpr auto kStaleTime = std::chrono::milliseconds(500);
 
 std::uint64_t random_number() {
   std::uint64_t value = 0;
@@ -69,6 +70,7 @@ Result<protocol::Welcome> PrinterSession::greet(Clock::time_point until) {
   post(Type::kHello, protocol::encode(hello));
   std::vector<std::byte> heard;
   std::size_t looked = 0;
+  bool refused_version = false;
   while (Clock::now() < until) {
     if (auto wanted = check_(); !wanted) return tl::unexpected(wanted.error());
     link_->wait(std::min(until, Clock::now() + kCheckTime));
@@ -78,10 +80,10 @@ Result<protocol::Welcome> PrinterSession::greet(Clock::time_point until) {
     if (heard.size() > kMaxNoiseBytes) return broken("the printer sends bytes that are no answer");
     if (const auto refused = protocol::find_frame(heard, Type::kRefused, 4096)) {
       const auto why = protocol::decode_refused(refused->frame.payload);
-      if (why && why->reason == protocol::Refusal::kNoVersion) {
-        return tl::unexpected(Failure{
-            FailureKind::kDevice, printer_uri(),
-            "speaks no version of binderjet-1 that this program knows; update one of them"});
+      // Left over from an earlier session it is followed by the welcome.
+      if (why && why->reason == protocol::Refusal::kNoVersion && !refused_version) {
+        refused_version = true;
+        until = std::min(until, Clock::now() + kStaleTime);
       }
     }
     for (std::size_t at = looked;;) {
@@ -103,6 +105,11 @@ Result<protocol::Welcome> PrinterSession::greet(Clock::time_point until) {
     }
     // A frame may be half there, but none is longer than this.
     looked = heard.size() > kMaxAnswerBytes + 64 ? heard.size() - kMaxAnswerBytes - 64 : 0;
+  }
+  if (refused_version) {
+    return tl::unexpected(
+        Failure{FailureKind::kDevice, printer_uri(),
+                "speaks no version of binderjet-1 that this program knows; update one of them"});
   }
   return broken("the printer does not answer; is it a binderjet-1 printer?");
 }

@@ -106,12 +106,27 @@ Result<File> Spool::lock() const {
   }
   Result<File> file = open_counter(folder_, 0);
   if (!file) return file;
-  // Others hold it for as long as they change a job's place; EINTR is a person who waits no longer.
-  if (flock(file->fd(), LOCK_EX) != 0) {
-    return tl::unexpected(system_failure(errno, folder_, "cannot lock it"));
-  }
+  if (auto locked = wait_for(*file); !locked) return tl::unexpected(locked.error());
   recover();
   return file;
+}
+
+// Others hold the lock for as long as they change a job's place, which is soon over, unless they
+// were stopped. EINTR is a person who waits no longer.
+Result<void> Spool::wait_for(const File& counter) const {
+  constexpr int kTries = 500;
+  constexpr useconds_t kPause_us = 2000;
+  for (int i = 0; i < kTries; ++i) {
+    if (flock(counter.fd(), LOCK_EX | LOCK_NB) == 0) return {};
+    if (errno != EWOULDBLOCK || usleep(kPause_us) != 0) {
+      return tl::unexpected(system_failure(errno, folder_, "cannot lock it"));
+    }
+  }
+  if (say_wait_) say_wait_(folder_ + ": waits for another process that holds the spool's lock");
+  if (flock(counter.fd(), LOCK_EX) != 0) {
+    return tl::unexpected(system_failure(errno, folder_, "cannot lock it"));
+  }
+  return {};
 }
 
 std::vector<std::string> Spool::ids(const std::string& place) const {
@@ -148,8 +163,11 @@ Result<std::string> Spool::new_id(const File& lock) const {
                     "program: move them away and write the last right number here",
                     last)});
   }
-  if (pwrite(lock.fd(), next.data(), next.size(), 0) != static_cast<ssize_t>(next.size())) {
-    return tl::unexpected(system_failure(errno, folder_ + "/last-id", "cannot write"));
+  const ssize_t written = pwrite(lock.fd(), next.data(), next.size(), 0);
+  if (written != static_cast<ssize_t>(next.size())) {
+    // A disk that fills up in the middle takes a part, and says nothing.
+    return tl::unexpected(
+        system_failure(written < 0 ? errno : ENOSPC, folder_ + "/last-id", "cannot write"));
   }
   if (auto done = sync_file(lock, folder_ + "/last-id"); !done) {
     return tl::unexpected(done.error());

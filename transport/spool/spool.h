@@ -26,7 +26,8 @@ namespace binderjet {
 
 class Spool {
  public:
-  explicit Spool(std::string folder) : folder_(std::move(folder)) {}
+  explicit Spool(std::string folder, SayWait say_wait = {})
+      : folder_(std::move(folder)), say_wait_(std::move(say_wait)) {}
 
   const std::string& folder() const { return folder_; }
   std::string incoming(const std::string& id) const { return folder_ + "/incoming/" + id; }
@@ -39,8 +40,8 @@ class Spool {
   // Makes the folders; the spool's own folder may be new, its parent may not: a mistyped path or
   // a disk that is not mounted shall not become a spool.
   Result<void> create() const;
-  // Waits for the lock and puts in order what dead senders left; the lock lasts as long as the
-  // File.
+  // Waits for the lock, says so if that takes a second, and puts in order what dead senders left;
+  // the lock lasts as long as the File. A signal ends the wait with a Failure.
   Result<File> lock() const;
 
   // All below: only with the lock.
@@ -62,16 +63,19 @@ class Spool {
   std::string id_at_device(std::uint64_t number) const;
 
  private:
+  Result<void> wait_for(const File& counter) const;
   void recover() const;
   std::vector<std::string> ids(const std::string& place) const;  // ascending by number
 
   std::string folder_;
+  SayWait say_wait_;
 };
 
 // Ids are decimal numbers without leading zeros; anything else could be a path.
 bool is_job_id(const std::string& text);
 
 // What spool:FOLDER means.
-std::unique_ptr<Backend> make_spool_backend(const std::string& folder);
+std::unique_ptr<Backend> make_spool_backend(const std::string& folder,
+                                            const BackendOptions& options);
 
 }  // namespace binderjet

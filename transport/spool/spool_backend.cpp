@@ -23,7 +23,8 @@ constexpr auto kBatchTime = std::chrono::milliseconds(50);
 
 class SpoolBackend : public Backend {
  public:
-  explicit SpoolBackend(std::string folder) : spool_(std::move(folder)) {}
+  SpoolBackend(std::string folder, SayWait say_wait)
+      : spool_(std::move(folder), std::move(say_wait)) {}
   ~SpoolBackend() override { stop("its sender stopped"); }
 
   Result<std::string> start(const JobTicket& ticket) override;
@@ -165,8 +166,9 @@ Result<std::string> SpoolBackend::header(const std::string& id) {
 
 }  // namespace
 
-std::unique_ptr<Backend> make_spool_backend(const std::string& folder) {
-  return std::make_unique<SpoolBackend>(folder);
+std::unique_ptr<Backend> make_spool_backend(const std::string& folder,
+                                            const BackendOptions& options) {
+  return std::make_unique<SpoolBackend>(folder, options.say_wait);
 }
 
 }  // namespace binderjet

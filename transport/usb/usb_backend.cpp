@@ -40,6 +40,7 @@ Result<std::unique_ptr<Backend>> make_usb_backend(const std::string& uri,
        parsed->patience,
        options.state_folder,
        options.stop_asked,
+       options.say_wait,
        [models = models_of(options)](const std::string& text) { return open_link(text, models); },
        {}});
 }

@@ -15,6 +15,9 @@
 namespace binderjet {
 namespace {
 
+// Nobody reads so many by hand, and what is done with them grows by their square.
+constexpr std::size_t kMostRows = 5000;
+
 [[noreturn]] void refuse(const std::string& path, int line, const std::string& what) {
   throw Error(ErrorKind::kBadInput, fmt::format("{}:{}", path, line), what);
 }
@@ -61,6 +64,11 @@ double GaugeTable::number(const Row& row, std::size_t column) const {
   if (error != std::errc() || end != cell.data() + cell.size() || !std::isfinite(value)) {
     refuse(path, row.line, fmt::format("\"{}\" in column {} is no number", cell, header[column]));
   }
+  constexpr double kMost = 1e6;
+  if (std::abs(value) > kMost) {
+    refuse(path, row.line,
+           fmt::format("\"{}\" in column {} is beyond {:g}", cell, header[column], kMost));
+  }
   return value;
 }
 
@@ -99,6 +107,11 @@ GaugeTable read_gauge_table(const std::string& path) {
     } else if (cells.size() != table.header.size()) {
       refuse(path, number,
              fmt::format("has {} cells, the header has {}", cells.size(), table.header.size()));
+    } else if (table.rows.size() == kMostRows) {
+      refuse(path, number,
+             fmt::format("is one row more than the {} that are traced at once; readings of one "
+                         "printer fit in fewer",
+                         kMostRows));
     } else {
       table.rows.push_back({number, std::move(cells)});
     }

@@ -52,6 +52,17 @@ TEST(ScanMesh, RegistersLikeAnyScan) {
   EXPECT_TRUE(measured.layers[11].empty());
 }
 
+TEST(ScanMesh, InMicrometersIsToldSoInsteadOfFillingTheMemory) {
+  const Workplace place;
+  for (const Mesh& mesh :
+       {models::box({0, 0, 0}, {5000, 3000, 1000}), models::box({1e30, 0, 0}, {2e30, 3, 1}),
+        models::box({1e7, 0, 0}, {1e7 + 5, 3, 1})}) {
+    models::write_obj(mesh, place / "scan.obj");
+    EXPECT_THROW(write_scan_stack(place / "scan.obj", 0.1, place / "stack"), Error);
+    EXPECT_FALSE(std::filesystem::exists(place / "stack"));
+  }
+}
+
 TEST(ScanMesh, MustHaveSomethingInIt) {
   const Workplace place;
   std::ofstream(place / "empty.obj") << "v 0 0 0\n";

@@ -66,7 +66,7 @@ INSTANTIATE_TEST_SUITE_P(
     Profile, ProfileSlip,
     testing::Values(
         Slip{"name = ", "name = 450", "a.toml:1:8: name must be a text"},
-        Slip{"dpi = ", "dpi = [300, 0]", "a.toml:4:7: dpi: 0 is not above 0"},
+        Slip{"dpi = ", "dpi = [300, 0]", "a.toml:4:7: dpi: 0 is not above 0.5"},
         Slip{"dpi = ", "dpi = [300]", "a.toml:4:7: dpi needs 2 numbers"},
         Slip{"dpi = ", "dpi = [\"fine\", 1]", "a.toml:4:8: dpi must be a number"},
         Slip{"dpi = ", "dpi = [300, 450", "a.toml:5:"},

@@ -4,8 +4,10 @@
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <unistd.h>
 
 #include "slicer/base/error.h"
+#include "slicer/stack/slice_stack.h"
 #include "slicer/stack/zip_writer.h"
 #include "tests/slicer/color/colored_layers.h"
 #include "tests/support/archive.h"
@@ -36,6 +38,34 @@ TEST(WholeFile, HasNoNameUntilItIsKept) {
   WholeFile file(folder.file("a"));
   file.keep();
   EXPECT_THAT(names_in(folder.file("")), ElementsAre("a"));
+}
+
+TEST(WholeFile, GoesWithAProgramThatMustEndAtOnce) {
+  const colored::Folder folder;
+  const auto end_at_once = [&] {
+    const WholeFile file(folder.file("a"));
+    write_file(file.part(), {});
+    StackWriter stack(folder.file("stack"), StackInfo());
+    WholeFile kept(folder.file("kept"));
+    kept.keep();
+    remove_unfinished();
+    _exit(0);
+  };
+  EXPECT_EXIT(end_at_once(), testing::ExitedWithCode(0), "");
+  EXPECT_THAT(names_in(folder.file("")), ElementsAre("kept"));
+}
+
+TEST(OutputFolder, GoesAgainIfItIsNewAndEmpty) {
+  const colored::Folder folder;
+  { const OutputFolder out(folder.file("new")); }
+  EXPECT_THAT(names_in(folder.file("")), IsEmpty());
+  {
+    const OutputFolder out(folder.file("used"));
+    write_file(folder.file("used") + "/a", {});
+  }
+  std::filesystem::create_directory(folder.file("there"));
+  { const OutputFolder out(folder.file("there")); }
+  EXPECT_THAT(names_in(folder.file("")), ElementsAre("there", "used"));
 }
 
 TEST(WholeFile, DoesNotReplaceWhatIsNoFile) {

@@ -14,6 +14,7 @@
 #include "tests/transport/sample_job.h"
 #include "transport/base/bytes.h"
 #include "transport/emulator/emulator_backend.h"
+#include "transport/emulator/fault_plan.h"
 #include "transport/emulator/socket_frame.h"
 #include "transport/emulator/socket_link.h"
 #include "transport/emulator/socket_server.h"
@@ -72,6 +73,14 @@ TEST(SocketFrame, ThatIsNoneOrClaimsTooMuchEndsIt) {
     EXPECT_FALSE(frames.next());
     EXPECT_TRUE(frames.wrong()) << head;
   }
+}
+
+TEST(FaultPlan, TakesNoLayerBelowTheFirst) {
+  EXPECT_TRUE(parse_fault("forgets-job@0"));
+  EXPECT_FALSE(parse_fault("forgets-job@-1"));
+  EXPECT_TRUE(parse_fault("stall@12x-1"));
+  EXPECT_FALSE(parse_fault("stall@12x-2"));
+  EXPECT_FALSE(parse_fault("nak@12x1:-5"));
 }
 
 TEST(PrinterSocket, IsForItsUserAloneAndGoesWithThePrinter) {

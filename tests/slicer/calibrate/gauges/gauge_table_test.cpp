@@ -56,6 +56,11 @@ TEST_F(Gauges, AreRefusedWithTheLine) {
   EXPECT_THAT(refusal("a,b\n1,\"2\n"), HasSubstr("g.csv:2: a quote"));
   EXPECT_THAT(refusal("a,b\n"), HasSubstr("holds no rows"));
   EXPECT_THAT(refusal("b\n1\n"), HasSubstr("has no column a"));
+  EXPECT_THAT(refusal("a\n1\n-1e308\n"), HasSubstr("g.csv:3: \"-1e308\" in column a is beyond"));
+  std::string many = "a\n";
+  for (int row = 0; row < 5000; ++row) many += "1\n";
+  EXPECT_EQ(refusal(many), "");
+  EXPECT_THAT(refusal(many + "1\n"), HasSubstr("g.csv:5002: is one row more than the 5000"));
   EXPECT_THROW(read_gauge_table(place_ / "absent.csv"), Error);
 }
 
