@@ -127,7 +127,7 @@ InverseLayer InverseSolver::repair(const LayerWindow& layers) const {
   // What is mended may cost wrong voxels, but no more than so many for each that is at fault.
   constexpr std::int64_t kFaultWeight = 5;
   std::int64_t least = kFaultWeight * found.weight + judge.wrong_voxels(best);
-  constexpr int kMostRounds = 24;  // with 10 some hard parts keep a fault
+  constexpr int kMostRounds = 30;  // with 10 some hard parts keep a fault
   for (int round = 0; round < kMostRounds && found.weight > 0; ++round) {
     search.run_again(found.faults);
     const RunLayer next = search.mask();
