@@ -129,25 +129,25 @@ TEST(Judge, MissesAPinThatIsLost) {
   EXPECT_FALSE(judge.no_worse_than_plain(empty));
 }
 
-// A spike whose upper end is lost: the layer below is asked for what would carry the end.
+// A tip is lost that stands on the rim of a block. The rim is only worn, but without it the tip has
+// nothing to stand on: the block's layer is asked for it.
 TEST(Judge, AsksTheLayerBelowForWhatCarriesATip) {
-  const PrinterModel model = judge_model(0.16, 0.5);
+  const PrinterModel model = judge_model(0.08, 0.5);
   Volume target(60, 60, 6);
   target.fill([](int x, int y, int z) {
-    return z < 2 ? x >= 10 && y >= 10 && x < 50 && y < 50
-                 : x >= 26 && y >= 26 && x < 32 && y < (z < 4 ? 34 : 32);
+    return z < 4 ? x >= 10 && y >= 10 && x < 32 && y < 50 : x >= 28 && y >= 26 && x < 32 && y < 32;
   });
   Volume masks = whole::masks(target, kJudgeGrid);
-  masks.fill([all = masks](int x, int y, int k) { return k == 0 && all.at(x, y, k) == 1; });
+  masks.fill([all = masks](int x, int y, int k) { return x < 14 && all.at(x, y, k) == 1; });
   const whole::InverseScene scene({&model, 1}, kJudgeGrid, {}, target, masks);
   ASSERT_GT(find_broken(scene.around(2), kJudgeGrid).weight, 0) << "the tip is lost";
+  ASSERT_EQ(find_broken(scene.around(1), kJudgeGrid).weight, 0) << "the rim is worn";
   const LayerWindow below = scene.around(1);
   const FoundFaults found = Judge(scene.model, below).broken();
   EXPECT_GE(found.weight, find_broken(scene.around(2), kJudgeGrid).weight);
-  RunLayer missing = RunLayer::powder(60, 60);
-  for (const SearchFaults& of : found.faults) missing = either(missing, of.missing);
-  EXPECT_TRUE(missing.at(28, 28));
-  EXPECT_FALSE(missing.at(12, 12)) << "no target in this layer";
+  ASSERT_EQ(found.faults.size(), 2U) << "what is too deep, and what is missing beside";
+  EXPECT_TRUE(found.faults[1].missing.at(30, 28));
+  EXPECT_FALSE(found.faults[1].missing.at(30, 12)) << "worn, and nothing stands on it";
 }
 
 TEST(Judge, WeighsWhatComesOffAndWhatIsSpurious) {
