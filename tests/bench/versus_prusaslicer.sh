@@ -53,7 +53,7 @@ ours() {  # ours MODEL SCALE ENHANCE
 middle() {  # middle NAME: median and range of the numbers on stdin
   sort -g | awk -v name="$1" '{ x[NR] = $1 }
     END { m = int((NR + 1) / 2)
-          printf "%-28s median %.3f   range %.3f to %.3f\n", name, NR % 2 ? x[m] : (x[m] + x[m + 1]) / 2, x[1], x[NR] }'
+          printf "%-31s median %.3f   range %.3f to %.3f\n", name, NR % 2 ? x[m] : (x[m] + x[m + 1]) / 2, x[1], x[NR] }'
 }
 
 compare() {  # compare MODEL SCALE
@@ -63,14 +63,17 @@ compare() {  # compare MODEL SCALE
     p=$(seconds peer "$1" "$2")
     n=$(seconds ours "$1" "$2" none)
     e=$(seconds ours "$1" "$2" paper)
-    echo "round $round: PrusaSlicer $p s, binderjet none $n s, paper $e s"
+    i=$(seconds ours "$1" "$2" inverse)
+    echo "round $round: PrusaSlicer $p s, binderjet none $n s, paper $e s, inverse $i s"
     echo "$p" >> "$work/peer.txt"
     awk "BEGIN { print $n / $p }" >> "$work/none.txt"
     awk "BEGIN { print $e / $p }" >> "$work/paper.txt"
+    awk "BEGIN { print $i / $p }" >> "$work/inverse.txt"
   done
   middle "PrusaSlicer, s" < "$work/peer.txt"
   middle "--enhance none / PrusaSlicer" < "$work/none.txt"
   middle "--enhance paper / PrusaSlicer" < "$work/paper.txt"
+  middle "--enhance inverse / PrusaSlicer" < "$work/inverse.txt"
 }
 
 if [ $# -gt 0 ]; then

@@ -71,7 +71,9 @@ class MaskSearch {
   // Whether any pair was flipped.
   bool flip_pairs(int edge_price);
   bool flip_pair_at(const OpenPixel& pixel, int edge_price);
-  // What all costs grow by when the pixel flips, as the last stage counts; none if it may not.
+  // What all costs grow by when the pixel flips, as the last stage counts. None if the flip would
+  // stand alone, or if the printer's own cost grows by so much more than `most` that nothing the
+  // drifted models gain makes up for it.
   std::optional<int> count_change(const OpenPixel& pixel, int edge_price, int most) const;
   void flip(const OpenPixel& pixel);
   int edge_change(const OpenPixel& pixel) const;
